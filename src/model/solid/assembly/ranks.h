@@ -37,6 +37,16 @@ static inline bool dea_solid_may_shorten(dea_status status)
   return status == DEA_E_NOT_CONVERGED || status == DEA_E_DOMAIN || status == DEA_E_INVERTED;
 }
 
+/* DEA_OK in place of such a failure, which is forgotten; any other status as it is. */
+static inline dea_status dea_solid_excuse(struct dea_context *ctx, dea_status status)
+{
+  if (!dea_solid_may_shorten(status)) {
+    return status;
+  }
+  dea_context_clear(ctx);
+  return DEA_OK;
+}
+
 /* DEA_E_INTERRUPTED on all ranks when one of them was interrupted: for each iteration. */
 dea_status dea_solid_check_interruption(struct dea_context *ctx);
 

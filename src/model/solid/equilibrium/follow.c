@@ -464,11 +464,7 @@ static dea_status iterate_all(struct dea_context *ctx, struct follow *w, bool *t
   } else {
     dea_solid_state_set(w->s, w->keep);
   }
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
+  return dea_solid_excuse(ctx, status);
 }
 
 /* A step with the new factor and the force that was found along with it: Newton's own. */
@@ -513,11 +509,7 @@ static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
     dea_solid_state_set(s, w->keep);
     s->found.factor_fits = s->found.stiff_factor_fits = false;
   }
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
+  return dea_solid_excuse(ctx, status);
 }
 
 dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double from_V,

@@ -127,11 +127,7 @@ static dea_status descend_if_possible(struct dea_context *ctx, struct dea_solid 
                                       struct dea_solid_report *report)
 {
   dea_status status = descend_from(ctx, s, 0, report);
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    return DEA_OK;
-  }
-  return status;
+  return dea_solid_excuse(ctx, status);
 }
 
 /* ---- from a stable equilibrium to another ---- */
@@ -174,10 +170,7 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
     *report = before;
     dea_solid_forget(s);
   }
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
+  status = dea_solid_excuse(ctx, status);
   dea_free(ctx, state);
   return status;
 }

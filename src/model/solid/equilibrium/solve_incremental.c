@@ -233,10 +233,7 @@ static dea_status look_at_modes(struct dea_context *ctx, const struct search *a,
   if (status == DEA_OK && leaves_plane(s, mode)) {
     *of_mesh = unstable;
   }
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
+  status = dea_solid_excuse(ctx, status);
   dea_free(ctx, mode);
   return status;
 }
@@ -320,11 +317,7 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   } else {
     dea_solid_restore_state(a->s, &a->start);
   }
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
+  return dea_solid_excuse(ctx, status);
 }
 
 // Load steps --------------------------------------------------------------------------------------
@@ -454,11 +447,7 @@ static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *be
     return close ? see(ctx, a, DEA_STOP_PASSED) : DEA_OK;
   }
   dea_solid_restore_state(s, &a->start);
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
+  return dea_solid_excuse(ctx, status);
 }
 
 /* One load step to a->at. *there: it has found a stable state on its path; otherwise the solid is

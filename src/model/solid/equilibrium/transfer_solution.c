@@ -289,11 +289,7 @@ static dea_status transfer_held(struct dea_context *ctx, struct dea_solid *s, st
   dea_status status = fade(ctx, s, &hold);
   memset(c->way, 0, s->problem.dofs * sizeof *c->way);
   status = status == DEA_OK ? dea_solid_push(ctx, s, c->way, NULL, NULL, report, found) : status;
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
+  return dea_solid_excuse(ctx, status);
 }
 
 /* At the controls of the goal. */
