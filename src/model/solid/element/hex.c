@@ -97,6 +97,25 @@ dea_status dea_hex_kinematics(const struct dea_hex_shape *s, const double *X, co
   return status;
 }
 
+/* M^-1 moment with M = L L^T. */
+static void solve_moments(const struct dea_hex_shape *s,
+                          double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX],
+                          double *moment)
+{
+  for (int a = 0; a < s->pressures; a++) {
+    for (int b = 0; b < a; b++) {
+      moment[a] -= factor[a][b] * moment[b];
+    }
+    moment[a] /= factor[a][a];
+  }
+  for (int a = s->pressures - 1; a >= 0; a--) {
+    for (int b = a + 1; b < s->pressures; b++) {
+      moment[a] -= factor[b][a] * moment[b];
+    }
+    moment[a] /= factor[a][a];
+  }
+}
+
 dea_status dea_hex_project(const struct dea_hex_shape *s, const struct dea_hex_point *points,
                            double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX],
                            double *moment, double *theta)
@@ -115,8 +134,7 @@ dea_status dea_hex_project(const struct dea_hex_shape *s, const struct dea_hex_p
       }
     }
   }
-  for (int a = 0; a < m; a++) { // Cholesky of a matrix of at most ten rows, and L theta' = moment
-    theta[a] = moment[a];
+  for (int a = 0; a < m; a++) { // Cholesky of a matrix of at most ten rows
     for (int b = 0; b <= a; b++) {
       double sum = factor[a][b];
       for (int c = 0; c < b; c++) {
@@ -126,17 +144,10 @@ dea_status dea_hex_project(const struct dea_hex_shape *s, const struct dea_hex_p
         return DEA_E_DOMAIN;
       }
       factor[a][b] = a == b ? sqrt(sum) : sum / factor[b][b];
-      theta[a] -= b < a ? factor[a][b] * theta[b] : 0;
     }
-    theta[a] /= factor[a][a];
   }
-  for (int a = m - 1; a >= 0; a--) { // L^T theta = theta'
-    for (int b = a + 1; b < m; b++) {
-      theta[a] -= factor[b][a] * theta[b];
-    }
-    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): the triangle above has set it
-    theta[a] /= factor[a][a];
-  }
+  memcpy(theta, moment, (size_t)m * sizeof *theta);
+  solve_moments(s, factor, theta);
   return DEA_OK;
 }
 
@@ -206,6 +217,17 @@ static double pressure_at(const struct dea_hex_shape *s,
   return pressure;
 }
 
+/* Energy, stress and tangent of one Gauss point, with what its branches add. */
+static dea_status point_of(const struct dea_part_material *part_material, int q,
+                           const struct dea_hex_point *at, double pressure, double field,
+                           bool tangent, struct dea_point *out)
+{
+  DEA_TRY_STATUS(
+      dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field, tangent, out));
+  dea_viscous_add(part_material, q, at->F, at->cof, at->J, tangent, out);
+  return DEA_OK;
+}
+
 /* One Gauss point: its energy, and what the sums over the points take. predicted: NULL without. */
 static dea_status evaluate_point(const struct dea_hex_shape *s,
                                  const struct dea_part_material *part_material, int q,
@@ -214,9 +236,7 @@ static dea_status evaluate_point(const struct dea_hex_shape *s,
 {
   const struct dea_hex_point *at = &work->points[q];
   struct dea_point point;
-  DEA_TRY_STATUS(dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field,
-                                         order >= DEA_TANGENT, &point));
-  dea_viscous_add(part_material, q, at->F, at->cof, at->J, order >= DEA_TANGENT, &point);
+  DEA_TRY_STATUS(point_of(part_material, q, at, pressure, field, order >= DEA_TANGENT, &point));
   *energy += at->weight * point.W;
   if (order >= DEA_FORCE) {
     set_flux(s, q, at->weight, point.P, 0, work);
@@ -369,10 +389,7 @@ static dea_status bend_point(const struct dea_part_material *part_material, int 
                              const double H[9], double *out)
 {
   struct dea_point point;
-  dea_status status =
-      dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field, true, &point);
-  DEA_TRY_STATUS(status);
-  dea_viscous_add(part_material, q, at->F, at->cof, at->J, true, &point);
+  DEA_TRY_STATUS(point_of(part_material, q, at, pressure, field, true, &point));
   *out = 0;
   for (int a = 0; a < 9; a++) {
     *out += H[a] * product(point.A + 9 * a, H);
@@ -436,25 +453,6 @@ static void step_gradient(const struct dea_hex_shape *s, double gradient[3][DEA_
   }
 }
 
-/* M^-1 moment with M = L L^T. */
-static void solve_moments(const struct dea_hex_shape *s,
-                          double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX],
-                          double *moment)
-{
-  for (int a = 0; a < s->pressures; a++) {
-    for (int b = 0; b < a; b++) {
-      moment[a] -= factor[a][b] * moment[b];
-    }
-    moment[a] /= factor[a][a];
-  }
-  for (int a = s->pressures - 1; a >= 0; a--) {
-    for (int b = a + 1; b < s->pressures; b++) {
-      moment[a] -= factor[b][a] * moment[b];
-    }
-    moment[a] /= factor[a][a];
-  }
-}
-
 /* S + share F^-1 (dP - H S) at a point: dS of dP = H S + F dS. */
 static dea_status predict_point(const struct dea_part_material *part_material, int q,
                                 const struct dea_hex_point *at, double pressure,
@@ -463,10 +461,7 @@ static dea_status predict_point(const struct dea_part_material *part_material, i
 {
   struct dea_point point;
   double S[9], dP[9], dS[9];
-  dea_status status =
-      dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field, true, &point);
-  DEA_TRY_STATUS(status);
-  dea_viscous_add(part_material, q, at->F, at->cof, at->J, true, &point);
+  DEA_TRY_STATUS(point_of(part_material, q, at, pressure, field, true, &point));
   dea_part_material_second_stress(at->cof, at->J, point.P, S);
   for (int i = 0; i < 3; i++) {
     for (int B = 0; B < 3; B++) {
@@ -617,12 +612,8 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
       const struct dea_hex_point *at = &state[q];
       double w = shape->weight[q];
       double pressure = pressure_at(shape, part_material, q, in->multiplier, theta);
-      status = dea_part_material_point(part_material, at->F, at->cof, at->J, pressure,
-                                       dea_part_material_field(part_material, in->voltage_V), false,
-                                       &point);
-      if (status == DEA_OK) {
-        dea_viscous_add(part_material, q, at->F, at->cof, at->J, false, &point);
-      }
+      status = point_of(part_material, q, at, pressure,
+                        dea_part_material_field(part_material, in->voltage_V), false, &point);
       for (int i = 0; i < 3; i++) {
         N[2 * i] += w * part_material->thickness_m * point.P[3 * i];
         N[2 * i + 1] += w * part_material->thickness_m * point.P[3 * i + 1];
