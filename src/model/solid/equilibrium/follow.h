@@ -15,3 +15,8 @@
 dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double from_V,
                             bool intermediate, struct dea_solid_report *report, double *rate,
                             bool *there);
+
+/* Equilibrium with the constraints of all multipliers met, at the controls as they are, downhill
+ * from where it is, as dea_solid_minimise. */
+dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
+                                 struct dea_solid_report *report);

@@ -4,7 +4,6 @@
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
-#include "model/solid/equilibrium/equilibrate.h"
 #include "model/solid/equilibrium/follow.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/equilibrium/newton.h"

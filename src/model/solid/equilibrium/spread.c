@@ -5,8 +5,7 @@
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/matrix.h"
-#include "model/solid/equilibrium/equilibrate.h"
-#include "model/solid/equilibrium/newton.h"
+#include "model/solid/equilibrium/follow.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/problem.h"
-#include "model/solid/equilibrium/equilibrate.h"
+#include "model/solid/equilibrium/follow.h"
 #include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
