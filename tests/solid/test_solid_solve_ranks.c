@@ -166,7 +166,7 @@ static dea_status solve_together(struct dea_context *context, struct dea_model *
                                  double voltage_V, struct dea_load_point *out)
 {
   *out = (struct dea_load_point){.voltage_V = voltage_V};
-  dea_solid_any(false);
+  dea_solid_allreduce_any(false);
   interrupted = voltage_V > 0 && dea_solid_rank() > 0;
   return DEA_OK;
 }

@@ -243,7 +243,8 @@ TEST(test_dimple_is_not_the_other_arm)
   assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 3000, &report), DEA_OK);
   assert_close(centre_z(), hanging, 1e-4, 0);
-  assert_int_equal(dea_solid_push(ctx, solid, push, centre_above, NULL, &report, &found), DEA_OK);
+  assert_int_equal(dea_solid_perturb(ctx, solid, push, centre_above, NULL, &report, &found),
+                   DEA_OK);
   assert_true(found && centre_z() < 1e-4 && report.energy_J > front);
   size_t tip = dea_grid_nearest(grid, (const double[3]){device.fibre_tip_radius_m, 0, 0});
   assert_true(dea_solid_displacement(solid)[3 * tip + 2] < -3e-4);

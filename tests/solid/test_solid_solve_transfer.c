@@ -113,7 +113,7 @@ static bool is_lost(void)
 {
   struct dea_solid_report report = {0};
   bool found;
-  assert_int_equal(dea_solid_push(ctx, solid, u, NULL, NULL, &report, &found), DEA_OK);
+  assert_int_equal(dea_solid_perturb(ctx, solid, u, NULL, NULL, &report, &found), DEA_OK);
   return !found;
 }
 

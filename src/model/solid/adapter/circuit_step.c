@@ -44,7 +44,7 @@ struct dea_circuit_step {
   double leakage_per_s; // conductance over capacitance
   double time_s, time_next_s;
   struct branch_jump branch_jump;
-  double lost_J, lost_next_J; // in leaps from one equilibrium to another
+  double lost_J, lost_next_J; // in jumps from one equilibrium to another
   struct dea_circuit_state circuit, circuit_next;
   double step_s, voltage_before_V, step_before_s; // of the step that is tried; before the last one
   double largest_m, largest_V, largest_J;         // so far
@@ -235,7 +235,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
   find_leakage(d);
   DEA_TRY(ctx, dea_solid_time_create(ctx, solid, &options, &d->time));
   if (d->driven.channels) {
-    DEA_TRY(ctx, dea_solid_agree(ctx, allocate_network(d)));
+    DEA_TRY(ctx, dea_solid_allreduce(ctx, allocate_network(d)));
     memcpy(d->own_start_V, solid->state.own_V, count * sizeof *d->own_V);
     if (own_sources) {
       memcpy(d->own_source, d->options.own_sources, count * sizeof *d->own_source);

@@ -205,7 +205,7 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea
   double *squares = dea_arena_alloc(memory, count, sizeof(double));
   w->modes = dea_arena_alloc(memory, count, sizeof *w->modes);
   w->moving = dea_arena_alloc(memory, dofs, sizeof(double));
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
   DEA_TRY(ctx, dea_solid_modes_whole(ctx, s, DEA_MODES_BY_MASS, count, squares, v));
   for (size_t i = 0; i < w->mode_count; i++) {
     DEA_TRY(ctx, take_mode(ctx, w, i, squares, v + i * dofs));
@@ -234,7 +234,7 @@ static dea_status prepare_modes(struct dea_context *ctx, struct work *w, struct 
 {
   const size_t multipliers = dea_adjoint_multipliers(w->adjoint);
   double *pressure = dea_arena_alloc(memory, w->mode_count * multipliers, sizeof(double));
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
   for (size_t i = 0; i < w->mode_count; i++, pressure += multipliers) {
     struct mode *m = &w->modes[i];
     m->pressure = pressure;
@@ -450,7 +450,7 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
   b->pull = dea_arena_alloc(memory, width, sizeof(double));
   b->by_voltage = dea_arena_alloc(memory, 2 * width, sizeof(double));
   bool *wanted = dea_arena_alloc(memory, width + 1, sizeof *wanted);
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
   DEA_TRY(ctx, find_rate(ctx, w, by_V, b->rate));
   for (size_t i = 0; i < dofs; i++) {
     b->rate[i] /= 2 * by_V;
@@ -582,7 +582,7 @@ static dea_status make_room(struct dea_context *ctx, struct work *w, struct dea_
   const size_t states = w->owner->solid->problem.dofs + dea_adjoint_multipliers(w->adjoint);
   w->here = dea_arena_alloc(memory, states, sizeof(double));
   w->there = dea_arena_alloc(memory, states, sizeof(double));
-  return dea_solid_agree(ctx, dea_arena_status(memory));
+  return dea_solid_allreduce(ctx, dea_arena_status(memory));
 }
 
 /* At the equilibrium. */
@@ -597,7 +597,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
   w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
   w.force_way = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
-  dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
+  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&memory));
   if (status == DEA_OK && dea_gradient_asks_mode(ask)) { // first: it needs a factor of its own
     status = find_modes(ctx, &w, &memory);
   }

@@ -456,7 +456,7 @@ static dea_status find_capacitances(struct dea_context *ctx, struct dea_sheet *s
                  ? dea_solid_element_capacitance(sheet->solid, e, sheet->solid->state.u, &out[e])
                  : DEA_OK;
   }
-  DEA_TRY(ctx, dea_solid_agree(ctx, status));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, status));
   dea_solid_sum(out, p->grid->element_count);
   return DEA_OK;
 }
@@ -710,7 +710,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
   const size_t electrodes = sheet->mesh->layout->electrode_count;
   double settling_s[2] = {0};
   DEA_TRY(ctx, dea_flat_shape_create(sheet->mesh->grid->order, &sheet->shape));
-  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_places(sheet)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, allocate_places(sheet)));
   for (size_t i = 0; i < electrodes; i++) {
     sheet->first[i] = first_of(sheet, i);
   }
@@ -719,7 +719,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
   number(sheet, marks, marks + electrodes);
   dea_free(ctx, marks);
   find_cells(sheet);
-  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_potentials(sheet)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, allocate_potentials(sheet)));
   DEA_TRY(ctx, create_matrix(ctx, sheet));
   DEA_TRY(ctx, set_start(ctx, sheet));
   DEA_TRY(ctx, find_settling(ctx, sheet, settling_s));

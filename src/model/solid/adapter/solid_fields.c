@@ -100,7 +100,7 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
   for (size_t k = 0; k < count; k++) {
     error_m[k] = NAN;
   }
-  if (dea_solid_any(!s->found.factor_fits)) {
+  if (dea_solid_allreduce_any(!s->found.factor_fits)) {
     return DEA_OK;
   }
   struct recovery work = {0};

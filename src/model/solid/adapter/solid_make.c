@@ -227,7 +227,8 @@ dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_dev
   model->memory.ctx = ctx;
   model->pressure_factor = 1;
   DEA_TRY(ctx, dea_solid_start(ctx));
-  DEA_TRY(ctx, dea_solid_agree(ctx, make_mesh(ctx, model))); // gmsh may be ended on one rank alone
+  DEA_TRY(ctx,
+          dea_solid_allreduce(ctx, make_mesh(ctx, model))); // gmsh may be ended on one rank alone
   dea_solid_model_look_at_mesh(model);
   model->answer =
       dea_arena_alloc(&model->memory, model->layout->monitor_count * DEA_OBSERVED_MOTIONS + 1,

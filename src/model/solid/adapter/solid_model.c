@@ -157,7 +157,7 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
   double *answers = dea_resize(ctx, model->answers, 2 * count * width + 1, sizeof *answers);
   model->answers = answers != NULL ? answers : model->answers;
-  DEA_NEED(!dea_solid_any(answers == NULL));
+  DEA_NEED(!dea_solid_allreduce_any(answers == NULL));
   if (dea_layout_has_sheet_resistance(model->layout)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "an excitation by electrodes with a sheet resistance is known in "
@@ -438,7 +438,7 @@ static dea_status look_at_mesh(struct dea_context *ctx, struct adaptation *a,
   double(*at)[3] = dea_resize(ctx, a->next, model->mesh.plane->quad_count, sizeof *at);
   a->next = at != NULL ? at : a->next;
   dea_status status =
-      dea_solid_any(weight == NULL || part == NULL || at == NULL) ? DEA_E_MEMORY : DEA_OK;
+      dea_solid_allreduce_any(weight == NULL || part == NULL || at == NULL) ? DEA_E_MEMORY : DEA_OK;
   if (status == DEA_OK && has_error(&point)) {
     status = find_error(ctx, model, a->monitor, values, weight, &pass->error, part);
   }

@@ -390,7 +390,7 @@ dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *m
   double *values = dea_arena_alloc(&memory, 4 * p->dofs, sizeof *values);
   double *own_V = dea_arena_alloc(&memory, p->channel_count + 1, sizeof *own_V);
   enum dea_observed *motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *motion);
-  dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
+  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&memory));
   if (status == DEA_OK) {
     v->force = values;
     v->rest = values + p->dofs;

@@ -291,7 +291,7 @@ dea_status dea_solver_state_push(struct dea_context *ctx, struct dea_solver_stat
   DEA_NEED(way != NULL);
   set_push(grid, push, folds ? NULL : solver_state->soft + push->mode * moves, fold, way);
   dea_status status =
-      dea_solid_push(ctx, owner->solid, way, NULL, NULL, &solver_state->report, found);
+      dea_solid_perturb(ctx, owner->solid, way, NULL, NULL, &solver_state->report, found);
   dea_free(ctx, way);
   DEA_TRY(ctx, status);
   return *found ? owner->point(ctx, owner->model, solver_state->voltage_V, out) : DEA_OK;

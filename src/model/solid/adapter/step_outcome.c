@@ -28,7 +28,7 @@ static dea_status evaluate_film(struct dea_context *ctx, struct dea_step_outcome
   for (int i = 0; i < 2 && first; i++) {
     e->film_at[i] = dea_arena_alloc(&e->memory, count, sizeof *e->film_at[i]);
   }
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&e->memory)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&e->memory)));
   double *now = e->film_at[1];
   e->film_at[0][0] = first ? NAN : e->film_at[0][0];
   memcpy(now, s->state.u, dofs * sizeof *now);

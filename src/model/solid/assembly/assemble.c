@@ -174,7 +174,7 @@ dea_status dea_solid_energy(struct dea_solid *s, double *u, double voltage_V, do
 {
   *energy = 0;
   dea_solid_bodies_place(s, u);
-  dea_status status = dea_solid_agree(NULL, own_energy(s, u, voltage_V, energy));
+  dea_status status = dea_solid_allreduce(NULL, own_energy(s, u, voltage_V, energy));
   if (status == DEA_OK) {
     dea_solid_sum(energy, 1);
     *energy -= dea_solid_dot(s, s->state.force, u);
@@ -435,7 +435,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   if (status == DEA_OK && level >= DEA_TANGENT) {
     status = dea_solid_bodies_add_pins(ctx, s, s->work.K);
   }
-  status = dea_solid_agree(ctx, status);
+  status = dea_solid_allreduce(ctx, status);
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx, status == DEA_OK ? dea_solid_end_matrix(ctx, s->work.K)
                                   : dea_solid_stop_matrix(ctx, s->work.K));

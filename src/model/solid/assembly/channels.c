@@ -167,7 +167,7 @@ dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *s, doubl
   size_t count = s->problem.channel_count + 1;
   memset(charge_C, 0, count * sizeof *charge_C);
   DEA_TRY(ctx, refuse_coupled(ctx, s));
-  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &(struct sums){.charge_C = charge_C})));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, add_own(s, &(struct sums){.charge_C = charge_C})));
   dea_solid_sum(charge_C, count);
   return DEA_OK;
 }
@@ -178,7 +178,7 @@ dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *s, c
   *conductance_S = 0;
   DEA_TRY(ctx, refuse_coupled(ctx, s));
   const struct sums sums = {.per_s = per_s, .conductance_S = conductance_S};
-  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &sums)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, add_own(s, &sums)));
   dea_solid_sum(conductance_S, 1);
   return DEA_OK;
 }
@@ -191,7 +191,7 @@ dea_status dea_solid_flows(struct dea_context *ctx, struct dea_solid *s, const d
   memset(charge_C, 0, count * sizeof *charge_C);
   memset(leak_A, 0, (count + 1) * sizeof *leak_A);
   DEA_TRY(ctx, refuse_coupled(ctx, s));
-  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &sums)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, add_own(s, &sums)));
   dea_solid_sum(charge_C, count);
   dea_solid_sum(leak_A, count + 1);
   return DEA_OK;
@@ -272,7 +272,8 @@ dea_status dea_solid_capacitances(struct dea_context *ctx, struct dea_solid *s, 
   size_t count = s->problem.channel_count + 1;
   memset(capacitance_F, 0, count * count * sizeof *capacitance_F);
   DEA_TRY(ctx, refuse_coupled(ctx, s));
-  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &(struct sums){.capacitance_F = capacitance_F})));
+  DEA_TRY(ctx,
+          dea_solid_allreduce(ctx, add_own(s, &(struct sums){.capacitance_F = capacitance_F})));
   dea_solid_sum(capacitance_F, count * count);
   if (held) {
     return DEA_OK;

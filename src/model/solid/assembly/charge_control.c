@@ -43,7 +43,7 @@ static dea_status add_up(struct dea_solid *s, const double *u, double sums[2])
       sums[1] += a * a * C;
     }
   }
-  status = dea_solid_agree(NULL, status);
+  status = dea_solid_allreduce(NULL, status);
   dea_solid_sum(sums, 2);
   return status;
 }
@@ -148,7 +148,7 @@ dea_status dea_charge_create(struct dea_context *ctx, struct dea_solid *solid)
   DEA_TRY(ctx, refuse(ctx, solid));
   struct dea_charge *c = dea_arena_alloc(&solid->memory, 1, sizeof *c);
   double *room = dea_arena_alloc(&solid->memory, solid->problem.dofs, sizeof *room);
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&solid->memory)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&solid->memory)));
   c->solid = solid;
   c->room = room;
   const struct dea_solid_load load = {.self = c,

@@ -156,7 +156,7 @@ dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, si
   DEA_NEED(capacity != NULL);
   memset(out, 0, count * sizeof *out);
   memset(s->work.g, 0, dofs * sizeof *s->work.g);
-  dea_status status = dea_solid_agree(ctx, add_pieces(ctx, s, capacity, count, v, out));
+  dea_status status = dea_solid_allreduce(ctx, add_pieces(ctx, s, capacity, count, v, out));
   dea_free(ctx, capacity);
   DEA_TRY(ctx, status);
   dea_solid_sum(out, count);
@@ -241,7 +241,7 @@ dea_status dea_solid_motion(struct dea_context *ctx, struct dea_solid *s, double
     status = add_motion(s, p->own[k], v, q, &sums[0], &sums[1]);
   }
   status = status == DEA_OK ? add_loads(s, 1, v, &sums[0]) : status;
-  DEA_TRY(ctx, dea_solid_agree(ctx, status));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, status));
   dea_solid_sum(sums, 2);
   dea_solid_sum(s->work.g, p->body_count > 0 ? p->dofs : 0);
   for (size_t i = 0; i < 3 * p->grid->node_count && p->point_mass != NULL; i++) {

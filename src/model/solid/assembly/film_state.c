@@ -376,7 +376,7 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
     }
     status = status == DEA_OK ? tension_of(s, films, e, out) : status;
   }
-  status = dea_solid_agree(NULL, status);
+  status = dea_solid_allreduce(NULL, status);
   DEA_TRY_STATUS(status);
   out->true_field_V_per_m = dea_solid_largest(out->true_field_V_per_m);
   out->area = dea_solid_largest(out->area);

@@ -87,7 +87,7 @@ dea_status dea_internal_variables_create(struct dea_context *ctx, const struct d
   struct dea_internal_variables *h = dea_alloc(ctx, 1, sizeof *h);
   *out = NULL;
   dea_status status = h != NULL ? allocate_points(ctx, s, branches, h) : DEA_E_MEMORY;
-  status = dea_solid_agree(ctx, status);
+  status = dea_solid_allreduce(ctx, status);
   DEA_TRY_ELSE(ctx, status, dea_internal_variables_destroy(ctx, h));
   *out = h;
   return DEA_OK;

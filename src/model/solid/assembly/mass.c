@@ -79,7 +79,7 @@ dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid 
       out[3 * nodes[i / 3] + i % 3] += force[i];
     }
   }
-  status = dea_solid_agree(NULL, status);
+  status = dea_solid_allreduce(NULL, status);
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "an element is inverted");
   }

@@ -200,7 +200,7 @@ dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s,
   struct dea_solid_problem *p = &s->problem;
   dea_solid_share(p->grid->node_count, &p->first_node, &p->end_node);
   dea_status status = before == DEA_OK ? split_and_count(ctx, s, lengths) : before;
-  status = dea_solid_agree(ctx, status); // from here on all ranks have to take part
+  status = dea_solid_allreduce(ctx, status); // from here on all ranks have to take part
   DEA_TRY(ctx, status);
   PetscInt per = p->per_node, all = (PetscInt)p->dofs;
   PetscInt rows = per * (PetscInt)(p->end_node - p->first_node);
@@ -294,7 +294,7 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
           "MatSetValuesBlocked");
     }
   }
-  status = dea_solid_agree(ctx, status);
+  status = dea_solid_allreduce(ctx, status);
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, A));
   DEA_TRY(ctx, status);
   return DEA_OK;

@@ -175,7 +175,7 @@ static dea_status assemble_capacity(struct dea_context *ctx, struct dea_solid *s
     size_t e = p->own[k];
     status = has_potential(s, e) ? add_capacity(ctx, s, e, u, psi) : add_pins(ctx, s, e);
   }
-  status = dea_solid_agree(NULL, status);
+  status = dea_solid_allreduce(NULL, status);
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, L));
   if (status != DEA_OK) {
     return status; // an inverted element: not worth a message in a line search

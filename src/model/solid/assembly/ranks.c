@@ -66,7 +66,7 @@ static dea_status start_blas(struct dea_context *ctx)
 /* A signal may reach one of the ranks alone. */
 static void agree_on_interruptions(struct dea_context *ctx)
 {
-  dea_context_set_agreement(ctx, rank_count() > 1 ? dea_solid_any : NULL);
+  dea_context_set_agreement(ctx, rank_count() > 1 ? dea_solid_allreduce_any : NULL);
 }
 
 dea_status dea_solid_start(struct dea_context *ctx)
@@ -91,7 +91,7 @@ dea_status dea_solid_start(struct dea_context *ctx)
   }
   PetscPushErrorHandler(give_code, NULL);
   agree_on_interruptions(ctx);
-  DEA_TRY(ctx, dea_solid_agree(ctx, start_blas(ctx)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, start_blas(ctx)));
   if (rank_count() > 1 &&
       atexit(dea_solid_stop) != 0) { // mpirun takes a process that leaves for crashed
     return dea_fail(ctx, DEA_E_TOOL, "PETSc's end could not be arranged");
@@ -129,7 +129,7 @@ int dea_solid_rank(void)
   return rank;
 }
 
-bool dea_solid_any(bool here)
+bool dea_solid_allreduce_any(bool here)
 {
   int flag = here;
   MPI_Allreduce(MPI_IN_PLACE, &flag, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
@@ -139,7 +139,7 @@ bool dea_solid_any(bool here)
 void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size)
 {
   void *here = dea_alloc(ctx, count, size);
-  if (dea_solid_any(here == NULL)) {
+  if (dea_solid_allreduce_any(here == NULL)) {
     dea_free(ctx, here);
     return NULL;
   }
@@ -153,7 +153,7 @@ dea_status dea_solid_check_interruption(struct dea_context *ctx)
              : DEA_OK;
 }
 
-dea_status dea_solid_agree(struct dea_context *ctx, dea_status status)
+dea_status dea_solid_allreduce(struct dea_context *ctx, dea_status status)
 {
   enum { TEXT = 256 };
   if (rank_count() == 1) {

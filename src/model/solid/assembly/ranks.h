@@ -18,11 +18,12 @@ dea_status dea_solid_libraries(struct dea_context *ctx, char *out, size_t size);
 /* Number of this process among those that mpirun started, from 0. */
 int dea_solid_rank(void);
 /* Whether it is so on any rank. */
-bool dea_solid_any(bool here);
+bool dea_solid_allreduce_any(bool here);
 /* Zeroed memory as of dea_alloc on all ranks, or NULL on all of them. */
 void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size);
-/* The status and message of the first rank with a failure. ctx: NULL where no message is wanted. */
-dea_status dea_solid_agree(struct dea_context *ctx, dea_status status);
+/* The status and message of the first rank with a failure, on all ranks. ctx: NULL where no message
+ * is wanted. */
+dea_status dea_solid_allreduce(struct dea_context *ctx, dea_status status);
 /* values[count] become their sums over the ranks, the same bits on each. */
 void dea_solid_sum(double *values, size_t count);
 /* Largest value of all ranks. */

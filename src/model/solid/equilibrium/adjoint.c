@@ -79,7 +79,7 @@ static dea_status find_constraints(struct dea_context *ctx, struct dea_adjoint *
                                          a->L + k * most * most);
     }
   }
-  return dea_solid_agree(ctx, status);
+  return dea_solid_allreduce(ctx, status);
 }
 
 /* Rows of the constraints of loads. */
@@ -136,7 +136,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
   a->before = dea_arena_alloc(&a->memory, a->count, sizeof(double));
   a->largest = dea_arena_alloc(&a->memory, a->count, sizeof *a->largest);
   a->open = dea_arena_alloc(&a->memory, a->count, sizeof *a->open);
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&a->memory)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&a->memory)));
   find_rows(a);
   // of the state before the last step, which was a 1e-8 of the way, or of this one; other points
   // may have been in touch then

@@ -622,7 +622,7 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
   for (size_t i = 0; i < sizeof of_states / sizeof of_states[0]; i++) {
     *of_states[i] = dea_arena_alloc(&t->memory, states, sizeof(double));
   }
-  DEA_NEED(!dea_solid_any(t->memory.failed));
+  DEA_NEED(!dea_solid_allreduce_any(t->memory.failed));
   double volume = 0;
   dea_solid_lump_volume(s, t->metric);
   for (size_t i = 0; i < p->dofs; i++) {
@@ -699,7 +699,7 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
   if (!(options->unit_m > 0) || !(fabs(options->step) > 0)) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a path takes a step and a unit of displacement");
   }
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   double *goal = dea_solid_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
   DEA_NEED(goal != NULL);
   dea_solid_controls_goal(s, voltage_V, goal);

@@ -83,7 +83,7 @@ static dea_status allocate(struct follow *w)
     w->df[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
     w->dh[i] = dea_arena_alloc(&w->memory, w->dofs, sizeof(double));
   }
-  return dea_solid_agree(w->memory.ctx, dea_arena_status(&w->memory));
+  return dea_solid_allreduce(w->memory.ctx, dea_arena_status(&w->memory));
 }
 
 /* u and multipliers from one vector. */
@@ -257,7 +257,7 @@ static dea_status find_constraints(struct dea_context *ctx, struct follow *w)
       }
     }
   }
-  status = dea_solid_agree(ctx, status);
+  status = dea_solid_allreduce(ctx, status);
   dea_solid_sum(w->weight, w->pressures);
   return status;
 }

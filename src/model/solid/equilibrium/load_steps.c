@@ -92,7 +92,8 @@ static dea_status descend_from(struct dea_context *ctx, struct dea_solid *s, int
   const struct dea_solid_report before = *report;
   double *mode = dea_alloc(ctx, 3 * s->problem.grid->node_count, sizeof *mode);
   double *state = dea_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
-  dea_status status = dea_solid_agree(ctx, mode != NULL && state != NULL ? DEA_OK : DEA_E_MEMORY);
+  dea_status status =
+      dea_solid_allreduce(ctx, mode != NULL && state != NULL ? DEA_OK : DEA_E_MEMORY);
   if (status == DEA_OK) {
     dea_solid_state_get(s, state);
     status = descend(ctx, s, side, mode, report);
@@ -112,7 +113,7 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
                                       struct dea_solid_report *report)
 {
   *report = (struct dea_solid_report){.load_factor = 1};
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
   if (report->unstable_modes > 0) {
     DEA_TRY(ctx, descend_from(ctx, s, side, report));
@@ -131,7 +132,7 @@ static dea_status descend_if_possible(struct dea_context *ctx, struct dea_solid 
 
 /* ---- from a stable equilibrium to another ---- */
 
-/* dea_solid_push from state, which is that of the solid. */
+/* dea_solid_perturb from state, which is that of the solid. */
 static dea_status solve_pushed(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
                                struct dea_solid_report *report)
 {
@@ -148,13 +149,13 @@ static dea_status solve_pushed(struct dea_context *ctx, struct dea_solid *s, con
   return DEA_OK;
 }
 
-dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
-                          bool (*accept)(const void *self, const double *displacement_m),
-                          const void *self, struct dea_solid_report *report, bool *found)
+dea_status dea_solid_perturb(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
+                             bool (*accept)(const void *self, const double *displacement_m),
+                             const void *self, struct dea_solid_report *report, bool *found)
 {
   struct dea_solid_report before = *report;
   *found = false;
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   double *state = dea_solid_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
   DEA_NEED(state != NULL);
   dea_solid_state_get(s, state);
@@ -341,7 +342,7 @@ dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid
 {
   const struct dea_load_steps *path = &s->work.load_steps;
   *report = (struct dea_solid_report){0};
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   dea_solid_controls_goal(s, voltage_V, path->controls_goal);
   return dea_load_steps_solve_to(ctx, s, path->controls_goal, least, report);
 }

@@ -33,9 +33,9 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
  * [node_count][3] (what is held stays), to a stable one that is accepted. accept: NULL takes any,
  * also one that an unstable equilibrium found there leads down to. Where that finds none the solid
  * stays where it was, *found is false and *report as it was. */
-dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *solid, const double *push_m,
-                          bool (*accept)(const void *self, const double *displacement_m),
-                          const void *self, struct dea_solid_report *report, bool *found);
+dea_status dea_solid_perturb(struct dea_context *ctx, struct dea_solid *solid, const double *push_m,
+                             bool (*accept)(const void *self, const double *displacement_m),
+                             const void *self, struct dea_solid_report *report, bool *found);
 
 /* Whether solves stay at an unstable equilibrium that they have found; at first they leave it. */
 void dea_solid_accept_unstable(struct dea_solid *solid, bool stay);

@@ -235,7 +235,7 @@ static dea_status refine(struct dea_context *ctx, struct eigen *f, size_t count)
   const size_t dofs = s->problem.dofs;
   double *v = dea_arena_alloc(&f->memory, count * dofs, sizeof *v);
   double *bent = dea_arena_alloc(&f->memory, count, sizeof *bent);
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&f->memory)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&f->memory)));
   for (size_t k = 0; k < count; k++) {
     DEA_TRY(ctx, dea_solid_from_vector(ctx, s, f->vectors[f->order[k]], v + k * dofs));
   }
@@ -274,7 +274,7 @@ static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_
   f->memory.ctx = ctx;
   f->order = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->order);
   f->value = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->value);
-  DEA_NEED(!dea_solid_any(f->memory.failed));
+  DEA_NEED(!dea_solid_allreduce_any(f->memory.failed));
   DEA_TRY(ctx, create_metric(ctx, f->solid, metric, &f->B));
   DEA_PETSC(ctx, VecDuplicateVecs(f->solid->work.right, f->capacity, &f->vectors));
   if (unstable > 0) {

@@ -257,7 +257,7 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
     }
   }
   s->found.predicted_fits = false;
-  status = dea_solid_agree(ctx, status);
+  status = dea_solid_allreduce(ctx, status);
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the stresses at the end of a step cannot be had");
   }

@@ -46,8 +46,8 @@ static void start_here(struct search *a)
 }
 
 /* The sink looks at where the solid is. */
-static dea_status see(struct dea_context *ctx, const struct search *a,
-                      enum dea_solid_stop_kind where)
+static dea_status report_point(struct dea_context *ctx, const struct search *a,
+                               enum dea_solid_stop_kind where)
 {
   return a->watch != NULL ? a->watch->points(ctx, a->watch->user, where) : DEA_OK;
 }
@@ -55,8 +55,8 @@ static dea_status see(struct dea_context *ctx, const struct search *a,
 /* How the film has changed from the last point that the sink has looked at to where the solid is. A
  * slack one that has grown at once is in no state: nothing but the end of its law holds it there
  * (docs/theory/membrane.md). A taut one may have gone past a limit point. */
-static dea_status see_change(struct dea_context *ctx, const struct search *a,
-                             struct dea_solid_change *out)
+static dea_status find_change(struct dea_context *ctx, const struct search *a,
+                              struct dea_solid_change *out)
 {
   *out = (struct dea_solid_change){.taut = true};
   return a->watch != NULL ? a->watch->change(ctx, a->watch->user, out) : DEA_OK;
@@ -122,7 +122,7 @@ static bool left_plane(const struct search *a)
 }
 
 /* Keeps that the path has led there. */
-static void see_plane(struct search *a)
+static void note_left_plane(struct search *a)
 {
   if (left_plane(a)) {
     a->left = a->snapped = true;
@@ -171,7 +171,7 @@ static dea_status take_stop(struct dea_context *ctx, struct search *a,
   a->stop->load_factor = at->load;
   dea_solid_state_get(a->s, a->limit.state);
   dea_solid_controls_get(a->s, a->limit.controls);
-  return see(ctx, a, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind);
+  return report_point(ctx, a, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind);
 }
 
 /* From a point beyond the goal to the equilibrium at it, from an unstable one down. */
@@ -190,7 +190,7 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
   }
   struct dea_solid_change change = {.grew = false};
   status = status == DEA_OK ? dea_solid_descend_unstable(ctx, s, 0, &report) : status;
-  status = status == DEA_OK ? see_change(ctx, a, &change) : status;
+  status = status == DEA_OK ? find_change(ctx, a, &change) : status;
   if (status == DEA_OK && report.unstable_modes == 0 && !change.grew) {
     *a->report = report;
     a->went_on = true;
@@ -258,7 +258,7 @@ static dea_status return_to_goal(struct dea_context *ctx, struct search *a)
   dea_solid_restore_state(a->s, &a->limit);
   DEA_TRY(ctx, dea_load_steps_solve_to(ctx, a->s, a->goal, 1, a->report));
   a->went_on = a->report->unstable_modes == 0;
-  return see(ctx, a, DEA_STOP_PASSED);
+  return report_point(ctx, a, DEA_STOP_PASSED);
 }
 
 /* Along the path until something has happened. */
@@ -278,10 +278,10 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
       return a->stop->load_factor < 1 ? DEA_OK : return_to_goal(ctx, a);
     }
     struct dea_solid_change change;
-    DEA_TRY(ctx, see_change(ctx, a, &change));
+    DEA_TRY(ctx, find_change(ctx, a, &change));
     DEA_TRY(ctx,
             change.grew ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path thins at once") : DEA_OK);
-    DEA_TRY(ctx, see(ctx, a, DEA_STOP_UNKNOWN));
+    DEA_TRY(ctx, report_point(ctx, a, DEA_STOP_UNKNOWN));
     DEA_TRY(ctx, look_at_modes(ctx, a, at.unstable_modes, &of_mesh));
     const bool unstable = at.unstable_modes > of_mesh;
     if (at.load >= 1 && !unstable && of_mesh > 0 && !is_deflected(a->s, a->s->problem.length_m)) {
@@ -313,7 +313,7 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   status = status == DEA_OK ? follow(ctx, a, path) : status;
   dea_solid_continuation_destroy(ctx, path);
   if (a->went_on) {
-    see_plane(a);
+    note_left_plane(a);
   } else {
     dea_solid_restore_state(a->s, &a->start);
   }
@@ -369,7 +369,7 @@ static dea_status check_branch(struct dea_context *ctx, struct search *a, const 
 {
   struct dea_solid *s = a->s;
   struct dea_solid_change change;
-  dea_status status = see_change(ctx, a, &change);
+  dea_status status = find_change(ctx, a, &change);
   dea_solid_controls_get(s, a->next);
   bool left = change.grew || (a->taut && change.taut && !a->report->snapped &&
                               left_branch(a, share_of(s, a->start.controls, goal, a->next)));
@@ -383,7 +383,7 @@ static dea_status check_branch(struct dea_context *ctx, struct search *a, const 
 }
 
 /* Load steps to controls, the shortest one `least` of the increment, with the limits of the film:
- * with a coupled field a taut one is solved in a few iterations, or leaps; a slack one has a long
+ * with a coupled field a taut one is solved in a few iterations, or jumps; a slack one has a long
  * way down.
  */
 static dea_status solve_steps(struct dea_context *ctx, const struct search *a, const double *goal,
@@ -436,7 +436,7 @@ static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *be
               a->next);
   dea_status status = solve_steps(ctx, a, a->next, 1, &report);
   if (status == DEA_OK && report.unstable_modes == 0) {
-    status = see_change(ctx, a, &change);
+    status = find_change(ctx, a, &change);
     close = moved_m(s, s->state.u, a->limit.state) < spot_share * moved_m(s, a->limit.state, NULL);
   }
   *beyond = status == DEA_OK && !change.grew;
@@ -444,7 +444,7 @@ static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *be
     a->snapped |= !close || !a->taut;
     a->stop->load_factor = share_of(s, a->begin, a->goal, a->limit.controls);
     a->stop->kind = DEA_STOP_UNKNOWN;
-    return close ? see(ctx, a, DEA_STOP_PASSED) : DEA_OK;
+    return close ? report_point(ctx, a, DEA_STOP_PASSED) : DEA_OK;
   }
   dea_solid_restore_state(s, &a->start);
   return dea_solid_excuse(ctx, status);
@@ -462,7 +462,7 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, dea_statu
   if (*there) {
     a->report->snapped |= before.snapped;
     start_here(a);
-    return see(ctx, a, DEA_STOP_UNKNOWN);
+    return report_point(ctx, a, DEA_STOP_UNKNOWN);
   }
   dea_solid_restore_state(a->s, &a->start);
   *a->report = before;
@@ -530,7 +530,7 @@ static dea_status close_in(struct dea_context *ctx, struct search *a)
   *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), 0, 0};
   dea_solid_state_get(a->s, a->limit.state);
   dea_solid_controls_get(a->s, a->limit.controls);
-  return see(ctx, a, DEA_STOP_NEAR);
+  return report_point(ctx, a, DEA_STOP_NEAR);
 }
 
 /* Long load steps and the path in turn. */
@@ -540,7 +540,7 @@ static dea_status go(struct dea_context *ctx, struct search *a)
     bool stays = false, on = true;
     dea_status status = take_steps(ctx, a, a->goal, path_share, &stays);
     if (status == DEA_OK && stays) {
-      see_plane(a);
+      note_left_plane(a);
       return DEA_OK;
     }
     DEA_TRY(ctx, status == DEA_OK || dea_solid_may_shorten(status) ? DEA_OK : status);
@@ -572,7 +572,7 @@ static dea_status search_create(struct dea_context *ctx, struct dea_arena *memor
   for (size_t i = 0; i < sizeof controls / sizeof *controls; i++) {
     *controls[i] = dea_arena_alloc(memory, count, sizeof(double));
   }
-  dea_status status = dea_solid_agree(ctx, dea_arena_status(memory));
+  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(memory));
   status = status == DEA_OK ? dea_solid_save_state(ctx, s, &a->limit) : status;
   status = status == DEA_OK ? dea_solid_save_state(ctx, s, &a->start) : status;
   return status;
@@ -588,7 +588,7 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
   memset(&memory, 0, sizeof memory);
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   *report = (struct dea_solid_report){.load_factor = 0};
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   dea_status status = search_create(ctx, &memory, &a);
   if (status == DEA_OK) {
     const int divergent = s->settings.max_divergent;
@@ -616,11 +616,11 @@ dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *s,
                                 struct dea_solid_saved_state *out)
 {
   *out = (struct dea_solid_saved_state){.memory = {.ctx = ctx}};
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   const struct dea_load_steps *steps = &s->work.load_steps;
   out->state = dea_arena_alloc(&out->memory, steps->state_count, sizeof *out->state);
   out->controls = dea_arena_alloc(&out->memory, steps->control_count, sizeof *out->controls);
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&out->memory)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&out->memory)));
   dea_solid_state_get(s, out->state);
   dea_solid_controls_get(s, out->controls);
   return DEA_OK;

@@ -110,7 +110,7 @@ dea_status dea_solid_spread(struct dea_context *ctx, struct dea_solid *s,
   for (size_t k = 0; k < p->own_count && s->state.inertia == NULL && !any; k++) {
     any = wrinkles(s, p->own[k]);
   }
-  if (!dea_solid_any(any)) {
+  if (!dea_solid_allreduce_any(any)) {
     return DEA_OK;
   }
   struct dea_part_material *stiff = dea_solid_alloc(ctx, p->part_material_count, sizeof *stiff);

@@ -175,7 +175,7 @@ dea_status dea_solid_untangle(struct dea_context *ctx, struct dea_solid *s, doub
   size_t size = 3 * s->problem.grid->node_count * sizeof *u;
   struct dea_arena memory = {.ctx = ctx};
   struct untangling t;
-  dea_status status = dea_solid_agree(ctx, untangling_create(&memory, s, &t));
+  dea_status status = dea_solid_allreduce(ctx, untangling_create(&memory, s, &t));
   *left = 0;
   for (int rings = 0; status == DEA_OK && rings < RINGS && (rings == 0 || *left > 0); rings++) {
     memcpy(t.u, u, size);
@@ -226,7 +226,7 @@ static dea_status fade(struct dea_context *ctx, struct dea_solid *s, struct hold
   const struct dea_solid_load load = {
       .self = hold, .piece_count = s->problem.grid->node_count, .evaluate = evaluate_hold};
   const double unit = s->problem.modulus_Pa / (s->problem.length_m * s->problem.length_m);
-  dea_status status = dea_solid_agree(ctx, dea_solid_add_load(ctx, s, &load));
+  dea_status status = dea_solid_allreduce(ctx, dea_solid_add_load(ctx, s, &load));
   DEA_TRY_STATUS(status);
   for (double k = hold_first; k > hold_least && status == DEA_OK; k /= hold_less) {
     struct dea_solid_report report = {.load_factor = 1};
@@ -263,7 +263,7 @@ static dea_status transfer_create(struct dea_context *ctx, struct dea_solid *s,
   out->volume = dea_arena_alloc(memory, dofs, sizeof(double));
   out->state = dea_arena_alloc(memory, s->work.load_steps.state_count, sizeof(double));
   out->controls = dea_arena_alloc(memory, s->work.load_steps.control_count, sizeof(double));
-  return dea_solid_agree(ctx, dea_arena_status(memory));
+  return dea_solid_allreduce(ctx, dea_arena_status(memory));
 }
 
 /* way: from where the solid is to u, where it is free to go. */
@@ -288,7 +288,7 @@ static dea_status transfer_held(struct dea_context *ctx, struct dea_solid *s, st
   }
   dea_status status = fade(ctx, s, &hold);
   memset(c->way, 0, s->problem.dofs * sizeof *c->way);
-  status = status == DEA_OK ? dea_solid_push(ctx, s, c->way, NULL, NULL, report, found) : status;
+  status = status == DEA_OK ? dea_solid_perturb(ctx, s, c->way, NULL, NULL, report, found) : status;
   return dea_solid_excuse(ctx, status);
 }
 
@@ -306,7 +306,7 @@ static dea_status transfer(struct dea_context *ctx, struct dea_solid *s, struct 
     return DEA_OK;
   }
   set_way(s, c->start, c->way);
-  DEA_TRY(ctx, dea_solid_push(ctx, s, c->way, NULL, NULL, report, found));
+  DEA_TRY(ctx, dea_solid_perturb(ctx, s, c->way, NULL, NULL, report, found));
   return *found ? DEA_OK : transfer_held(ctx, s, c, report, found);
 }
 
@@ -318,7 +318,7 @@ dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid
   const double own = s->settings.descent_bulk_factor;
   struct transfer c;
   *found = false;
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   struct dea_load_steps *path = &s->work.load_steps;
   dea_status status = transfer_create(ctx, s, &c);
   if (status == DEA_OK) {

@@ -77,7 +77,7 @@ static dea_status make_room(struct dea_context *ctx, const struct dea_solid *s, 
   r->push = dea_arena_alloc(&r->memory, count + 1, sizeof *r->push);
   r->shape = dea_arena_alloc(&r->memory, count * r->dofs + 1, sizeof *r->shape);
   r->rest = dea_arena_alloc(&r->memory, TERMS * r->dofs, sizeof *r->rest);
-  return dea_solid_any(r->memory.failed) ? DEA_E_MEMORY : DEA_OK;
+  return dea_solid_allreduce_any(r->memory.failed) ? DEA_E_MEMORY : DEA_OK;
 }
 
 /* How many modes are needed; none of them may be unstable. */
@@ -141,7 +141,7 @@ dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *
   DEA_TRY(ctx, dea_solid_response_check(ctx, s));
   double *force = dea_alloc(ctx, s->problem.dofs, sizeof *force);
   struct dea_solid_response *r = dea_alloc(ctx, 1, sizeof *r);
-  dea_status status = dea_solid_any(force == NULL || r == NULL) ? DEA_E_MEMORY : DEA_OK;
+  dea_status status = dea_solid_allreduce_any(force == NULL || r == NULL) ? DEA_E_MEMORY : DEA_OK;
   status = status == DEA_OK ? fill(ctx, s, highest_rad_per_s, r, force) : status;
   s->found.factor_fits = s->found.predicted_fits = false;
   dea_free(ctx, force);

@@ -110,7 +110,7 @@ static dea_status find_charged(struct dea_context *ctx, struct dea_solid *s, str
       out->energy_J += out->capacitance_F[i] * out->voltage_V[i] * out->voltage_V[i];
     }
   }
-  status = dea_solid_agree(ctx, status);
+  status = dea_solid_allreduce(ctx, status);
   dea_solid_sum(&out->energy_J, 1);
   return status;
 }
@@ -194,7 +194,7 @@ static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
                              const struct dea_solid_time_options *options)
 {
   struct dea_solid *s = t->solid;
-  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_time(t)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, allocate_time(t)));
   if (t->own) {
     memcpy(t->own_V, s->state.own_goal_V, t->channels * sizeof *t->own_V);
     memcpy(t->own_first_V, s->state.own_goal_V, t->channels * sizeof *t->own_V);
@@ -291,13 +291,13 @@ static dea_status save_accepted(struct dea_context *ctx, struct dea_solid_time *
   if (t->open) {
     return_to_accepted(t);
   }
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   if (t->keep_count != path->state_count || t->control_count != path->control_count) {
     double *state = dea_resize(ctx, t->keep, path->state_count, sizeof *state);
     t->keep = state != NULL ? state : t->keep;
     double *controls = dea_resize(ctx, t->controls, path->control_count, sizeof *controls);
     t->controls = controls != NULL ? controls : t->controls;
-    if (dea_solid_any(state == NULL || controls == NULL)) {
+    if (dea_solid_allreduce_any(state == NULL || controls == NULL)) {
       return DEA_E_MEMORY;
     }
     t->keep_count = path->state_count;

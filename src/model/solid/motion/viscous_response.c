@@ -284,7 +284,8 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
   double complex *sum = NULL;
   double *memory = dea_alloc(ctx, 3 * p->dofs, sizeof *memory);
   struct dea_branches *only = dea_alloc(ctx, p->part_material_count, sizeof *only);
-  dea_status status = dea_solid_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
+  dea_status status =
+      dea_solid_allreduce_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
   status = status == DEA_OK ? check_stable(ctx, s) : status;
   status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, 0, memory) : status;
   status = status == DEA_OK ? make_parts(ctx, y, only) : status;
@@ -326,7 +327,7 @@ dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *s,
   y.part_material = dea_alloc(ctx, capacity, sizeof *y.part_material);
   y.share = dea_alloc(ctx, capacity, sizeof *y.share);
   const bool lacks = y.part == NULL || y.part_material == NULL || y.share == NULL;
-  const bool any_lacks = dea_solid_any(lacks);
+  const bool any_lacks = dea_solid_allreduce_any(lacks);
   dea_status status =
       lacks || any_lacks ? DEA_E_MEMORY : respond(ctx, &y, damping, rad_per_s, count, &taker);
   for (size_t p = 0; p < capacity && y.part != NULL; p++) {
