@@ -6,6 +6,7 @@
 #include "quarter_grid.h"
 #include "solid_element.h"
 #include "testing.h"
+#include "yeoh_part.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
@@ -18,15 +19,7 @@ static struct dea_element_result at, up;
 static struct dea_part_material film(double pre_stretch)
 {
   double h = 100e-6 / (pre_stretch * pre_stretch);
-  struct dea_part_material layer = {
-      .law = dea_law_find("yeoh"),
-      .param = {178.4e3, -6e3, 4.2e3},
-      .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
-      .kappa_Pa = 4e7,
-      .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-      .thickness_m = h};
-  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
-  return layer;
+  return yeoh_part(pre_stretch, 2.8 * DEA_EPSILON_0, h);
 }
 
 static struct dea_part_material plastic(void)

@@ -3,6 +3,7 @@
 #include "devices.h"
 #include "solid_element.h"
 #include "testing.h"
+#include "yeoh_part.h"
 
 static struct dea_hex_shape shape;
 static struct dea_element_result plain, other;
@@ -12,14 +13,7 @@ static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3, 5e2};
 
 static struct dea_part_material film(void)
 {
-  struct dea_part_material layer = {.law = dea_law_find("yeoh"),
-                                    .param = {178.4e3, -6e3, 4.2e3},
-                                    .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                    .kappa_Pa = 4e7,
-                                    .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                    .thickness_m = 44e-6};
-  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
-  return layer;
+  return yeoh_part(1.5, 2.8 * DEA_EPSILON_0, 44e-6);
 }
 
 static struct dea_part_material plastic(void)

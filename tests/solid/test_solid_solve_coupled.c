@@ -5,6 +5,7 @@
 #include "quarter_grid.h"
 #include "solid_node.h"
 #include "testing.h"
+#include "yeoh_part.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
@@ -14,15 +15,7 @@ static const double epsilon = 2.8 * DEA_EPSILON_0;
 
 static struct dea_part_material film(double pre_stretch, double thickness_m)
 {
-  struct dea_part_material layer = {
-      .law = dea_law_find("yeoh"),
-      .param = {178.4e3, -6e3, 4.2e3},
-      .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
-      .kappa_Pa = 4e7,
-      .permittivity_F_per_m = epsilon,
-      .thickness_m = thickness_m};
-  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
-  return layer;
+  return yeoh_part(pre_stretch, epsilon, thickness_m);
 }
 
 /* What the callbacks of this file see. */

@@ -4,6 +4,7 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
 #include "testing.h"
+#include "yeoh_part.h"
 
 #include "solid_fixture.h"
 
@@ -64,14 +65,7 @@ static void clear(void)
 
 static struct dea_part_material film(void)
 {
-  struct dea_part_material layer = {.law = dea_law_find("yeoh"),
-                                    .param = {178.4e3, -6e3, 4.2e3},
-                                    .pre_stretch = {1, 1, 1},
-                                    .kappa_Pa = 4e7,
-                                    .permittivity_F_per_m = 2.5e-11,
-                                    .thickness_m = 1e-3};
-  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
-  return layer;
+  return yeoh_part(1, 2.5e-11, 1e-3);
 }
 
 static void expect(const char *part)

@@ -5,6 +5,7 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "quarter_grid.h"
 #include "testing.h"
+#include "yeoh_part.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
@@ -57,12 +58,7 @@ static dea_status spring(const void *self, size_t piece, const double *u, enum d
 static void check_capacity(int order)
 {
   const double V = 100;
-  struct dea_part_material layers[] = {{.law = dea_law_find("yeoh"),
-                                        .param = {178.4e3, -6e3, 4.2e3},
-                                        .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                        .kappa_Pa = 4e7,
-                                        .permittivity_F_per_m = epsilon,
-                                        .thickness_m = h_m},
+  struct dea_part_material layers[] = {yeoh_part(1.5, epsilon, h_m),
                                        dea_part_material_bonded((const double[]){2.75e9, 0.375})};
   const struct dea_quarter quarter = {.order = order,
                                       .order_z = order,
@@ -87,7 +83,6 @@ static void check_capacity(int order)
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report rest, report;
-  assert_int_equal(dea_part_material_relax(&layers[0]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
