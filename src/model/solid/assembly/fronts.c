@@ -33,6 +33,7 @@ struct front {
   int *row;     // [rows - own] unknowns beyond its own, rising
   int *into;    // [rows - own] rows of the parent that they are
   int parent;   // -1: none
+  int side;     // stack of its update: not that of its parent
   size_t panel; // where it begins in L
   size_t block; // first of its blocks of K
 };
@@ -54,8 +55,8 @@ struct dea_fronts {
   struct block *blocks; // [fronts[count].block]
   double *L;
   size_t entries;     // of L
-  double *update;     // of the present front
-  double *stack;      // updates that wait for their parents
+  double *update;     // of the present front, on its stack
+  double *stack[2];   // updates that wait for their parents
   int *waiting;       // [count] fronts that these are of
   double *oo;         // [own]^2 of a front, as it was before its elimination
   bool *below;        // [PER nodes] rows where D has -1
@@ -336,28 +337,37 @@ static void place_blocks(const struct analysis *a, struct dea_fronts *f, int *at
   }
 }
 
-/* Memory of the factor; the largest that waits at a time. */
+static size_t update_size(const struct front *front)
+{
+  return (size_t)(front->rows - front->own) * (size_t)(front->rows - front->own);
+}
+
+/* Memory of the factor; the largest that waits at a time. A front's update is made on one stack
+ * while those of its children, the last on the other, are taken from there. */
 static dea_status make_room(struct dea_context *ctx, struct dea_fronts *f)
 {
-  size_t most = 0, rows = 0, own = 0, depth = 0, deepest = 0, waiting = 0;
+  size_t rows = 0, own = 0, depth[2] = {0, 0}, deepest[2] = {0, 0}, waiting = 0;
   f->waiting = dea_arena_alloc(&f->memory, f->count, sizeof *f->waiting);
   DEA_TRY(ctx, dea_arena_status(&f->memory));
+  for (size_t n = f->count; n-- > 0;) {
+    struct front *front = &f->fronts[n];
+    front->side = front->parent >= 0 ? !f->fronts[front->parent].side : 0;
+  }
   for (size_t n = 0; n < f->count; n++) {
-    size_t beyond = (size_t)(f->fronts[n].rows - f->fronts[n].own);
+    const struct front *front = &f->fronts[n];
+    size_t *of = &depth[front->side], *most = &deepest[front->side];
+    *of += update_size(front);
+    *most = *of > *most ? *of : *most;
     for (; waiting > 0 && f->fronts[f->waiting[waiting - 1]].parent == (int)n; waiting--) {
-      const struct front *child = &f->fronts[f->waiting[waiting - 1]];
-      depth -= (size_t)(child->rows - child->own) * (size_t)(child->rows - child->own);
+      depth[!front->side] -= update_size(&f->fronts[f->waiting[waiting - 1]]);
     }
-    depth += beyond * beyond;
     f->waiting[waiting++] = (int)n;
-    deepest = depth > deepest ? depth : deepest;
-    most = beyond > most ? beyond : most;
-    rows = (size_t)f->fronts[n].rows > rows ? (size_t)f->fronts[n].rows : rows;
-    own = (size_t)f->fronts[n].own > own ? (size_t)f->fronts[n].own : own;
+    rows = (size_t)front->rows > rows ? (size_t)front->rows : rows;
+    own = (size_t)front->own > own ? (size_t)front->own : own;
   }
   f->L = dea_arena_alloc(&f->memory, f->entries, sizeof *f->L);
-  f->update = dea_arena_alloc(&f->memory, most * most, sizeof *f->update);
-  f->stack = dea_arena_alloc(&f->memory, deepest, sizeof *f->stack);
+  f->stack[0] = dea_arena_alloc(&f->memory, deepest[0], sizeof *f->stack[0]);
+  f->stack[1] = dea_arena_alloc(&f->memory, deepest[1], sizeof *f->stack[1]);
   f->x = dea_arena_alloc(&f->memory, PER * (size_t)f->nodes, sizeof *f->x);
   f->beyond = dea_arena_alloc(&f->memory, rows, sizeof *f->beyond);
   f->oo = dea_arena_alloc(&f->memory, own * own, sizeof *f->oo);
@@ -481,7 +491,7 @@ static void add_update(struct dea_fronts *f, const struct front *front, const st
   }
 }
 
-/* What waits for this front, off the stack; *depth: what is left of that. */
+/* What waits for this front, off the other stack; *depth: what is left of that. */
 static void take_updates(struct dea_fronts *f, size_t number, size_t *waiting, size_t *depth)
 {
   const struct front *front = &f->fronts[number];
@@ -491,8 +501,8 @@ static void take_updates(struct dea_fronts *f, size_t number, size_t *waiting, s
   }
   for (; *waiting > 0 && f->fronts[f->waiting[*waiting - 1]].parent == (int)number; --*waiting) {
     const struct front *child = &f->fronts[f->waiting[*waiting - 1]];
-    *depth -= (size_t)(child->rows - child->own) * (size_t)(child->rows - child->own);
-    add_update(f, front, child, f->stack + *depth);
+    *depth -= update_size(child);
+    add_update(f, front, child, f->stack[child->side] + *depth);
   }
 }
 
@@ -583,21 +593,20 @@ static void eliminate(struct dea_fronts *f, const struct front *front, int *nega
 /* As dea_fronts_factor. */
 static int factorise(struct dea_fronts *f, const double *K, int most)
 {
-  size_t waiting = 0, depth = 0;
+  size_t waiting = 0, depth[2] = {0, 0};
   int negative = 0;
   for (size_t n = 0; n < f->count && negative <= most; n++) {
     int of_front;
     const struct front *front = &f->fronts[n];
-    const size_t size = (size_t)(front->rows - front->own) * (size_t)(front->rows - front->own);
+    f->update = f->stack[front->side] + depth[front->side];
+    depth[front->side] += update_size(front);
     fill_panel(f, front, K);
-    take_updates(f, n, &waiting, &depth);
+    take_updates(f, n, &waiting, &depth[!front->side]);
     eliminate(f, front, &of_front);
     if (of_front < 0) {
       return -1;
     }
     negative += of_front;
-    memcpy(f->stack + depth, f->update, size * sizeof *f->stack);
-    depth += size;
     f->waiting[waiting++] = (int)n;
   }
   return negative;
