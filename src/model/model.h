@@ -93,11 +93,11 @@ enum dea_control_kind {
   DEA_CONTROL_PRESSURE,  // all pressures of the layout times a factor
   DEA_CONTROL_CONJUGATE, // dead force [N] or moment [N m] conjugate to a coordinate, beside all
                          // else
-  DEA_CONTROL_CHARGE, // charge [C] of the supply in place of its voltage (docs/theory/devices.md)
+  DEA_CONTROL_CHARGE,    // charge [C] in place of a voltage (docs/theory/devices.md)
 };
 struct dea_control {
   enum dea_control_kind kind;
-  size_t body;   // of the layout; like the component of a body only
+  size_t body;   // of the layout; of a charge the channel, 0: the supply's
   int component; // 0 to 2: along x, y, z; 3 to 5: about them
   /* Conjugate: the coordinate is a motion of a monitor, body its number and component an enum
    * dea_observed, that is linear in the displacements (of a point, a body or a region's mean); or

@@ -23,7 +23,7 @@ enum range { SHIFT, TURN, FORCE, PRESSURE, CHARGE, RANGES };
 
 /* Settings of compute.loading; without a range nothing is computed. */
 struct settings {
-  struct dea_label body;
+  struct dea_label body, channel;
   struct dea_choice direction; // component of the body
   struct dea_quantity from[RANGES], to[RANGES], steps;
   struct dea_quantity duration_s; // NaN: slowly
@@ -65,6 +65,10 @@ static const struct dea_field fields[] = {
     ENDS(CHARGE, "charge_from", "charge_to", "C",
          "charge of the supply on the channels, each times its ratio, in place of a voltage",
          "0 nC", "500 nC"),
+    DEA_LABEL_ROW("channel", AT(channel), "sense",
+                  "channel that takes the charge in place of its voltage while the others are at "
+                  "the voltages; 0 nC: it is open",
+                  .absent_text = "the supply"),
     DEA_INTEGER_ROW("steps", AT(steps), "20", "equal steps from the first value to the last",
                     .min = 1, .max = 1000, .default_text = "10"),
     DEA_NUMBER_ROW("duration", AT(duration_s), "s", "10 s",
@@ -128,8 +132,11 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, s->duration_s.location,
                                  "loading: a duration goes with a shift or a turn"));
   }
-  if (range == CHARGE && s->voltage_count > 0) {
-    DEA_TRY(ctx, wrong(ctx, s, "a charge is given in place of voltages"));
+  if (range == CHARGE && s->voltage_count > 0 && s->channel.text[0] == '\0') {
+    DEA_TRY(ctx, wrong(ctx, s, "a charge is given in place of voltages (of one channel: channel)"));
+  }
+  if (range != CHARGE && s->channel.text[0] != '\0') {
+    DEA_TRY(ctx, wrong(ctx, s, "a channel goes with charge_from and charge_to"));
   }
   if (range < PRESSURE && s->body.text[0] == '\0') {
     DEA_TRY(ctx, wrong(ctx, s, "which body? (body: NAME)"));
@@ -153,19 +160,27 @@ static double largest_Pa(const struct dea_layout *layout)
   return most;
 }
 
-static dea_status unknown_body(struct dea_context *ctx, const struct settings *settings,
-                               const struct dea_layout *layout)
+static dea_status unknown(struct dea_context *ctx, const struct dea_label *label,
+                          const struct dea_layout *layout, bool channel)
 {
   const char *known[DEA_DESIGN_STOPS_MAX];
-  size_t count = layout->body_count < COUNT(known) ? layout->body_count : COUNT(known);
+  const size_t all = channel ? layout->channel_count - 1 : layout->body_count; // but for ground
+  const size_t count = all < COUNT(known) ? all : COUNT(known);
   for (size_t i = 0; i < count; i++) {
-    known[i] = layout->bodies[i].name;
+    known[i] = channel ? layout->channels[i + 1].name : layout->bodies[i].name;
   }
-  const char *nearest = dea_nearest_name(settings->body.text, known, count);
-  return dea_finding_add(ctx, DEA_ERROR, settings->body.location,
-                         "loading: the device has no body '%s'%s%s%s", settings->body.text,
-                         nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                         nearest != NULL ? "'?" : "");
+  const char *nearest = dea_nearest_name(label->text, known, count);
+  return dea_finding_add(ctx, DEA_ERROR, label->location,
+                         "loading: the device has no %s '%s'%s%s%s", channel ? "channel" : "body",
+                         label->text, nearest != NULL ? "; did you mean '" : "",
+                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+}
+
+/* Number of the channel with a charge; 0: none, ground, or no such one. */
+static size_t channel_of(const struct settings *s, const struct dea_layout *layout)
+{
+  const size_t k = dea_layout_find_channel(layout, s->channel.text);
+  return k != DEA_LAYOUT_NONE ? k : 0;
 }
 
 static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
@@ -183,7 +198,10 @@ static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
   }
   if (s->body.text[0] != '\0' &&
       dea_layout_find_body(device->layout, s->body.text) == DEA_LAYOUT_NONE) {
-    DEA_TRY(ctx, unknown_body(ctx, s, device->layout));
+    DEA_TRY(ctx, unknown(ctx, &s->body, device->layout, false));
+  }
+  if (s->channel.text[0] != '\0' && channel_of(s, device->layout) == 0) {
+    DEA_TRY(ctx, unknown(ctx, &s->channel, device->layout, true));
   }
   if (range == PRESSURE && largest_Pa(device->layout) == 0) {
     return wrong(ctx, s, "the device has no pressure (pressures: ...) that could change");
@@ -231,8 +249,8 @@ static const struct dea_result_column point_columns[] = {
     DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force", "of what holds or pushes the body"),
     DEA_NUMBER_COLUMN("moment_N_m", "N m", "uN m", 1e6, "moment", "of what holds the body"),
     DEA_NUMBER_COLUMN("pressure_Pa", "Pa", "kPa", 1e-3, "pressure", "the largest on the device"),
-    DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "given by the supply"),
-    DEA_NUMBER_COLUMN("supply_voltage_V", "V", "kV", 1e-3, "supply", "voltage that it has then"),
+    DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "given of the supply or a channel"),
+    DEA_NUMBER_COLUMN("supply_voltage_V", "V", "kV", 1e-3, "supply", "voltage that this has then"),
     DEA_NUMBER_COLUMN("highest_z_m", "m", "mm", 1e3, "highest z",
                       "largest displacement out of the plane"),
     DEA_NUMBER_COLUMN("lowest_z_m", "m", "mm", 1e3, "lowest z",
@@ -437,15 +455,18 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
     *limit = passed->point.force_N;
   }
   l->point++;
-  DEA_TRY(ctx, DEA_TABLE_ADD(ctx, &l->result->tables[l->table[POINTS]], DEA_CELL(l->voltage_V),
-                             DEA_CELL((double)l->point), DEA_CELL(back), DEA_CELL(v[AT_SHIFT]),
-                             DEA_CELL(v[AT_TURN]), DEA_CELL(v[OF_FORCE]), DEA_CELL(v[OF_MOMENT]),
-                             DEA_CELL(v[AT_PRESSURE]), DEA_CELL(v[AT_CHARGE]),
-                             DEA_CELL(l->range == CHARGE ? at.voltage_V : NAN),
-                             DEA_CELL(at.highest_z_m), DEA_CELL(at.lowest_z_m),
-                             DEA_CELL(at.energy_J), DEA_CELL(at.min_tension_N_per_m),
-                             DEA_CELL(at.unstable_modes), DEA_CELL(dea_load_point_trusted(&at)),
-                             DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(&at), flags))));
+  DEA_TRY(ctx,
+          DEA_TABLE_ADD(ctx, &l->result->tables[l->table[POINTS]], DEA_CELL(l->voltage_V),
+                        DEA_CELL((double)l->point), DEA_CELL(back), DEA_CELL(v[AT_SHIFT]),
+                        DEA_CELL(v[AT_TURN]), DEA_CELL(v[OF_FORCE]), DEA_CELL(v[OF_MOMENT]),
+                        DEA_CELL(v[AT_PRESSURE]), DEA_CELL(v[AT_CHARGE]),
+                        DEA_CELL(l->range != CHARGE    ? NAN
+                                 : l->control.body > 0 ? seen.channel[l->control.body].voltage_V
+                                                       : at.voltage_V),
+                        DEA_CELL(at.highest_z_m), DEA_CELL(at.lowest_z_m), DEA_CELL(at.energy_J),
+                        DEA_CELL(at.min_tension_N_per_m), DEA_CELL(at.unstable_modes),
+                        DEA_CELL(dea_load_point_trusted(&at)),
+                        DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(&at), flags))));
   DEA_TRY(ctx, dea_study_add_point(ctx, l->type, l->model, l->result->device, &at,
                                    &l->result->curves[l->curve]));
   DEA_TRY(ctx, watch(ctx, l, back, v[AT_SHIFT], v[OF_FORCE]));
@@ -483,6 +504,9 @@ static dea_status begin(struct dea_context *ctx, struct loading *l)
   if (l->control.kind == DEA_CONTROL_PLACE) {
     DEA_TRY(ctx, block(ctx, l));
   } else {
+    if (l->range == CHARGE && l->control.body > 0) { // open, before the others have a voltage
+      DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, 0, &at));
+    }
     DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
   }
   return DEA_OK;
@@ -561,8 +585,10 @@ static void choose_control(struct loading *l)
   l->body = l->settings->body.text[0] != '\0' ? dea_layout_find_body(layout, l->settings->body.text)
                                               : DEA_LAYOUT_NONE;
   l->scale = l->range == PRESSURE ? 1 / largest_Pa(layout) : 1;
-  l->control = (struct dea_control){
-      .kind = kinds[l->range], .body = l->body, .component = l->settings->direction.value};
+  l->control =
+      (struct dea_control){.kind = kinds[l->range],
+                           .body = l->range == CHARGE ? channel_of(l->settings, layout) : l->body,
+                           .component = l->settings->direction.value};
 }
 
 dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type *type,
@@ -611,9 +637,10 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   struct loading l = {
       .type = type, .result = result, .settings = settings, .range = range_of(settings)};
   double voltages_V[DEA_DESIGN_STOPS_MAX] = {0};
-  size_t count = l.range == CHARGE ? 1
-                                   : dea_study_stops(result->design, settings->voltages_V,
-                                                     settings->voltage_count, true, voltages_V);
+  size_t count = l.range == CHARGE && settings->channel.text[0] == '\0'
+                     ? 1
+                     : dea_study_stops(result->design, settings->voltages_V,
+                                       settings->voltage_count, true, voltages_V);
   choose_control(&l);
   l.total = count * ((size_t)settings->steps.si * (settings->back.value == 1 ? 2 : 1) + 1);
   DEA_TRY(ctx, add_tables(ctx, &l));

@@ -449,6 +449,64 @@ TEST(test_free_charge)
   }
 }
 
+/* A stack of two such films whose middle electrode has a charge Q while the outer ones are at V, in
+ * fields E and r E: plate capacitors, V_1 = E H/l^2, V = (1 + r) V_1, Q = eps a^2 l^2 (1 - r) E.
+ * The middle one open, r = 1, the stack is free, and mu (l^2 - l^-4) = eps E^2; else it is held,
+ * far below what buckles it. */
+static void check_charge_of_a_channel(bool held)
+{
+  static const double stretches[] = {1.06, 1.1}, ratios[] = {0.5, 2};
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  const double a = 10e-3, mu = 60e3, H = 100e-6, eps = DEA_EPSILON_0 * 2.8;
+  add_rectangle(device, "film", -a / 2, -a / 2, a, a);
+  for (size_t k = 0; k < 2; k++) {
+    add_film(device, 0, 1, 1);
+    l->plies[k].material.law = dea_law_find("neo-hookean");
+    l->plies[k].material.param[0] = mu;
+  }
+  l->channels[l->channel_count++] = (struct dea_layout_channel){.name = "sense", .ratio = 0};
+  add_electrode(device, 0, false, 0, 0);
+  add_electrode(device, 0, true, 0, 2);
+  add_electrode(device, 1, true, 0, 1);
+  l->supports[l->support_count++] = (struct dea_layout_support){.region = 0,
+                                                                .edge = held,
+                                                                .within = DEA_LAYOUT_NONE,
+                                                                .components = held ? 7 : 4,
+                                                                .hinged = !held};
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+  assert_int_equal(dea_layout_find_symmetry(ctx, l), DEA_OK);
+  const struct dea_model_settings settings = {.refinement = 1};
+  struct dea_model *model = layout_model(device, &settings);
+  const struct dea_model_type *type = dea_model_find("3d");
+  const struct dea_control charge = {.kind = DEA_CONTROL_CHARGE, .body = 2};
+  struct dea_load_point at;
+  assert_int_equal(type->move(ctx, model, &charge, 0, &at), DEA_OK);
+  for (size_t i = 0; i < 2; i++) {
+    const double s = held ? 1 : stretches[i], r = held ? ratios[i] : 1;
+    const double E = held ? 1e6 : sqrt(mu * (s * s - pow(s, -4)) / eps), D = eps * s * s * E;
+    const double V = (1 + r) * E * H / (s * s), Q = a * a * (1 - r) * D;
+    struct dea_observation seen;
+    assert_int_equal(type->solve(ctx, model, V, &at), DEA_OK);
+    assert_int_equal(type->move(ctx, model, &charge, Q, &at), DEA_OK);
+    assert_int_equal(type->observe(ctx, model, &seen), DEA_OK);
+    assert_close(at.voltage_V, V, 1e-12, 0);
+    assert_close(seen.monitor[0][DEA_OBSERVED_STRETCH_X], s, 0, 1e-5);
+    assert_close(seen.channel[2].voltage_V, E * H / (s * s), 2e-5, 0);
+    assert_close(seen.channel[2].charge_C, Q, 1e-7, 1e-15);
+    assert_close(seen.channel[1].charge_C, a * a * r * D, 2e-5, 0);
+  }
+  type->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+TEST(test_charge_of_a_channel)
+{
+  check_charge_of_a_channel(false);
+  check_charge_of_a_channel(true);
+}
+
 /* Voltages and charges of a path. */
 struct sunk {
   size_t count;

@@ -326,7 +326,7 @@ static dea_status find_step(struct dea_context *ctx, struct dea_circuit_step *d,
   for (int i = 0; i < VOLTAGES_MAX; i++) {
     if (step->disconnected && !d->no_charge) {
       DEA_TRY(ctx,
-              dea_charge_hold(ctx, d->driven.solid, film->capacitance_F * V / d->driven.copies));
+              dea_charge_hold(ctx, d->driven.solid, 0, film->capacitance_F * V / d->driven.copies));
     }
     const dea_status status = i > 0 ? dea_solid_time_again(ctx, d->time, V, report)
                                     : try_step(ctx, d, V, step->length_s, report);

@@ -126,7 +126,7 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
     dea_solid_pressures_set(model, value);
     break;
   case DEA_CONTROL_CHARGE:
-    DEA_TRY(ctx, dea_charge_hold(ctx, model->solid, value / model->copies));
+    DEA_TRY(ctx, dea_charge_hold(ctx, model->solid, control->body, value / model->copies));
     break;
   case DEA_CONTROL_CONJUGATE:
     DEA_TRY(ctx, set_conjugate(ctx, model, control, value));

@@ -68,7 +68,8 @@ dea_status dea_solid_model_report(struct dea_context *ctx, void *self, double vo
   struct dea_model *model = self;
   struct dea_solid_extremes extremes;
   double capacitance_F;
-  const bool charged = dea_charge_is_held(model->solid);
+  const bool charged =
+      dea_charge_is_held(model->solid) && dea_charge_now(model->solid).channel == 0;
   dea_status status = dea_solid_extremes(model->solid, model->plies.films, &extremes);
   status = status == DEA_OK ? dea_solid_capacitance(ctx, model->solid, &capacitance_F) : status;
   if (status != DEA_OK) {

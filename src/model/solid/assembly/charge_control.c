@@ -7,35 +7,38 @@
 
 struct dea_charge {
   struct dea_solid *solid;
-  double *room; // [dofs]
+  double *room;  // [dofs]
+  double *share; // [channels + 1] of the lift: the supply's, or 1 of one channel
+  size_t channel;
   bool held;
   double now_C, goal_C;
   double lift_V, capacitance_F;
 };
 
 /* What an element's voltage changes by with the lift. */
-static double weight_of(const struct dea_solid *s, size_t e)
+static double weight_of(const struct dea_charge *c, size_t e)
 {
-  const int *at = s->problem.between[e];
-  return s->problem.share[at[0]] - s->problem.share[at[1]];
+  const int *at = c->solid->problem.between[e];
+  return c->share[at[0]] - c->share[at[1]];
 }
 
 static void lift(struct dea_charge *c, double lift_V)
 {
   c->lift_V = lift_V;
   for (size_t k = 1; k <= c->solid->problem.channel_count; k++) {
-    c->solid->state.lift_V[k] = lift_V * c->solid->problem.share[k];
+    c->solid->state.lift_V[k] = lift_V * c->share[k];
   }
 }
 
 /* Q without a lift, and dQ/dV, at displacements u. */
-static dea_status add_up(struct dea_solid *s, const double *u, double sums[2])
+static dea_status add_up(const struct dea_charge *c, const double *u, double sums[2])
 {
+  struct dea_solid *s = c->solid;
   dea_status status = DEA_OK;
   sums[0] = sums[1] = 0;
   for (size_t i = 0; i < s->problem.own_count && status == DEA_OK; i++) {
     const size_t e = s->problem.own[i];
-    const double a = weight_of(s, e);
+    const double a = weight_of(c, e);
     double C = 0;
     if (s->problem.active[e] && a != 0) {
       status = dea_solid_element_capacitance(s, e, u, &C);
@@ -56,7 +59,7 @@ static void prepare(void *self, const double *u)
   const double last_V = c->lift_V;
   if (c->held) {
     lift(c, 0);
-    const bool found = add_up(c->solid, u, sums) == DEA_OK && sums[1] > 0;
+    const bool found = add_up(c, u, sums) == DEA_OK && sums[1] > 0;
     c->capacitance_F = found ? sums[1] : c->capacitance_F;
     lift(c, found ? (c->now_C - sums[0]) / sums[1] : last_V);
   }
@@ -86,7 +89,7 @@ static void add_slope(const struct dea_charge *c, const double *u, double *slope
   for (size_t i = 0; i < s->problem.own_count; i++) {
     const size_t e = s->problem.own[i];
     const struct dea_element *element = dea_solid_element(s, e);
-    const double a = weight_of(s, e), V = dea_solid_voltage_across(s, e, s->state.voltage_V);
+    const double a = weight_of(c, e), V = dea_solid_voltage_across(s, e, s->state.voltage_V);
     if (!s->problem.active[e] || a == 0 || V == 0) {
       continue;
     }
@@ -148,9 +151,11 @@ dea_status dea_charge_create(struct dea_context *ctx, struct dea_solid *solid)
   DEA_TRY(ctx, refuse(ctx, solid));
   struct dea_charge *c = dea_arena_alloc(&solid->memory, 1, sizeof *c);
   double *room = dea_arena_alloc(&solid->memory, solid->problem.dofs, sizeof *room);
+  double *share = dea_arena_alloc(&solid->memory, solid->problem.channel_count + 1, sizeof *share);
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&solid->memory)));
   c->solid = solid;
   c->room = room;
+  c->share = share;
   const struct dea_solid_load load = {.self = c,
                                       .piece_count = 1,
                                       .evaluate = evaluate,
@@ -165,7 +170,8 @@ dea_status dea_charge_create(struct dea_context *ctx, struct dea_solid *solid)
   return DEA_OK;
 }
 
-dea_status dea_charge_hold(struct dea_context *ctx, struct dea_solid *solid, double charge_C)
+dea_status dea_charge_hold(struct dea_context *ctx, struct dea_solid *solid, size_t channel,
+                           double charge_C)
 {
   double sums[2];
   if (solid->problem.charge == NULL) {
@@ -173,7 +179,11 @@ dea_status dea_charge_hold(struct dea_context *ctx, struct dea_solid *solid, dou
   }
   struct dea_charge *c = solid->problem.charge;
   if (!c->held) {
-    const dea_status status = add_up(solid, solid->state.u, sums);
+    c->channel = channel;
+    for (size_t k = 1; k <= solid->problem.channel_count; k++) {
+      c->share[k] = channel == 0 ? solid->problem.share[k] : k == channel;
+    }
+    const dea_status status = add_up(c, solid->state.u, sums);
     if (status != DEA_OK || !(sums[1] > 0)) {
       return dea_fail(ctx, status != DEA_OK ? status : DEA_E_UNSUPPORTED,
                       "no film takes a charge here");
@@ -204,5 +214,5 @@ bool dea_charge_is_held(const struct dea_solid *solid)
 struct dea_charge_values dea_charge_now(const struct dea_solid *solid)
 {
   const struct dea_charge *c = solid->problem.charge;
-  return (struct dea_charge_values){c->now_C, c->lift_V, c->capacitance_F};
+  return (struct dea_charge_values){c->channel, c->now_C, c->lift_V, c->capacitance_F};
 }
