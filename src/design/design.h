@@ -113,6 +113,7 @@ struct dea_design {
     struct dea_quantity bond_modulus_Pa;  // Young's modulus of the glue
     struct dea_choice outer_end;          // enum dea_outer_end
     struct dea_inplane_length outer_gap;  // from a free outer end to the frame
+    struct dea_quantity angle_rad;        // of the first from the x axis
   } fibres;
 
   struct dea_choice gravity;          // enum dea_gravity

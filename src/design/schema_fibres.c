@@ -26,6 +26,9 @@ static const char *const outer_ends[] = {"clamped", "hinged", "free", NULL};
 static const struct dea_field fibre_fields[] = {
     DEA_INTEGER_ROW("count", AT(fibres.count), "4", "number of fibres, evenly spread", .min = 1,
                     .max = 360, .required = true),
+    DEA_NUMBER_ROW("angle", AT(fibres.angle_rad), "radian", "15 degree",
+                   "of the first fibre from the x axis, counter-clockwise, seen from the fibres",
+                   .min = -7, .max = 7, .default_text = "0 degree"),
     DEA_NUMBER_ROW("width", AT(fibres.width_m), "m", "2 mm",
                    "width of a fibre; it is bonded free of stress, so this is its own width",
                    .above_min = true, .max = 1, .default_text = "2 mm"),

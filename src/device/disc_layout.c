@@ -67,7 +67,7 @@ static void add_fibres(const struct dea_device *d, int region, struct dea_region
 {
   const struct outline fibre = outline_of(d, region);
   for (int i = 0; i < d->fibre_count; i++) {
-    double angle = 2 * pi * i / d->fibre_count, c = cos(angle), s = sin(angle);
+    double angle = d->angle_rad + 2 * pi * i / d->fibre_count, c = cos(angle), s = sin(angle);
     struct dea_vertex v[4] = {0};
     for (int k = 0; k < 4; k++) {
       v[k].x_m = c * fibre.corner[k][0] - s * fibre.corner[k][1];

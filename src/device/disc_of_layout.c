@@ -212,20 +212,18 @@ static bool measure_fibre(const struct dea_contour *fibre, struct dea_device *ou
   return true;
 }
 
-/* Whether a contour about the disc's centre is that one about the origin, turned back. */
+/* Whether a contour about the disc's centre is that one about the origin. */
 static bool is_moved(const struct dea_contour *a, const struct dea_contour *b,
                      const struct dea_device *disc)
 {
-  const double near = alike * disc->frame_radius_m, c = cos(disc->angle_rad);
-  const double s = sin(disc->angle_rad);
+  const double near = alike * disc->frame_radius_m;
   bool same = false;
   for (size_t first = 0; first < b->count && a->count == b->count && !same; first++) {
     same = true;
     for (size_t i = 0; i < a->count && same; i++) {
       const struct dea_vertex *v = &a->vertex[i], *w = &b->vertex[(first + i) % b->count];
       const double x = v->x_m - disc->centre_m[0], y = v->y_m - disc->centre_m[1];
-      same = hypot(c * x + s * y - w->x_m, c * y - s * x - w->y_m) <= near &&
-             fabs(v->bulge - w->bulge) <= alike;
+      same = hypot(x - w->x_m, y - w->y_m) <= near && fabs(v->bulge - w->bulge) <= alike;
     }
   }
   return same;

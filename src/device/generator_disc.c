@@ -93,7 +93,7 @@ static void add_leads(const struct dea_design *design, const struct dea_device *
       angle = fibres > 0 ? half + step * floor((opposite - half) / step + 0.5 - 1e-9) : opposite;
     }
     electrodes[i].lead = true;
-    electrodes[i].lead_rad = angle;
+    electrodes[i].lead_rad = device->angle_rad + angle;
   }
 }
 

@@ -44,12 +44,13 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
   look.aside = doubts != 0;
   snprintf(look.title, sizeof look.title, "%.4g kV%s%s", 1e-3 * record->voltage_V,
            doubts != 0 ? ": " : "", dea_flags_text(doubts, words));
+  const double angle = record->mesh->fibres > 0 ? record->mesh->symmetry_angle : 0;
   dea_status status = dea_surface_lattice_create(ctx, record->mesh, PIECES, &drawing);
-  status = status == DEA_OK ? add_diameter(ctx, panel, &drawing, 0, &look) : status;
+  status = status == DEA_OK ? add_diameter(ctx, panel, &drawing, angle, &look) : status;
   if (status == DEA_OK && record->mesh->fibres > 0) {
     look.style = DEA_DASHED;
     look.title[0] = '\0';
-    status = add_diameter(ctx, panel, &drawing, acos(-1) / record->mesh->fibres, &look);
+    status = add_diameter(ctx, panel, &drawing, angle + acos(-1) / record->mesh->fibres, &look);
   }
   panel->x_min = -panel->x_max;
   dea_surface_lattice_free(ctx, &drawing);

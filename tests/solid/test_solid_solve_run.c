@@ -117,6 +117,31 @@ TEST(test_eight_fibres)
   }
 }
 
+/* Fibres that are turned with their mesh do the same; the axes of their nodes are their own. */
+TEST(test_turned_fibres)
+{
+  static const char *const keys[] = {"fibre_tip_z_m", "electrode_edge_u_m", "centre_z_m",
+                                     "min_tension_N_per_m", "capacitance_F"};
+  static const char *const angles[] = {"0", "17", "-80"}; // 10 from the next one
+  json_t *roots[3];
+  const json_t *last[3];
+  char text[200];
+  for (int i = 0; i < 3; i++) {
+    snprintf(text, sizeof text,
+             "frdea-4.yaml --set compute.solid.order=1 --set 'fibres.angle=%s degree' "
+             "--set 'compute.voltage={values: [3 kV]}'",
+             angles[i]);
+    last[i] = last_point(text, &roots[i]);
+  }
+  for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+    assert_close(number(last[1], keys[k]), number(last[0], keys[k]), 1e-9, 0);
+    assert_close(number(last[2], keys[k]), number(last[0], keys[k]), 1e-9, 0);
+  }
+  for (int i = 0; i < 3; i++) {
+    json_decref(roots[i]);
+  }
+}
+
 /* Keys of the mesh arrive: what is solved has the elements and nodes of the mesh that `dea mesh`
  * writes, and a whole disc those of its ten sectors. */
 TEST(test_mesh_of_the_design)

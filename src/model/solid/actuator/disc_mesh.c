@@ -110,6 +110,10 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_device *d
   }
   mesh->layout = mesh->own;
   DEA_TRY(ctx, dea_fibre_disc_plane(ctx, p, &mesh->cuts, &mesh->plane));
+  const struct dea_motion turn = dea_motion_rotation((double[2]){0, 0}, device->angle_rad);
+  for (size_t i = 0; i < mesh->plane->node_count && device->angle_rad != 0; i++) {
+    dea_motion_apply(&turn, mesh->plane->x + 2 * i, mesh->plane->x + 2 * i);
+  }
   DEA_TRY(ctx, name_groups(ctx, mesh));
   return DEA_OK;
 }
@@ -126,7 +130,8 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
       .disc = device,
       .cuts = like != NULL ? like->cuts : *plate,
       .membrane = plate->membrane,
-      .sector = {.fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
+      .sector = {.angle_rad = device->angle_rad,
+                 .fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
       .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
   DEA_TRY_ELSE(ctx, make_plane(ctx, device, out), dea_layout_mesh_free(ctx, out));
   DEA_TRY(ctx, like != NULL ? dea_layout_mesh_fill_like(ctx, settings, like, out)
@@ -134,14 +139,13 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
   return DEA_OK;
 }
 
-/* Whether blocks are the mesh: of a disc about the origin with its first fibre along x, of which
- * nothing else is asked for. */
+/* Whether blocks are the mesh: of a disc about the origin, of which nothing else is asked for. */
 static dea_status find_blocks(struct dea_context *ctx, const struct dea_device *device,
                               const struct dea_model_settings *settings, bool *blocks)
 {
   struct dea_layout *layout;
   *blocks = device->disc && device->centre_m[0] == 0 && device->centre_m[1] == 0 &&
-            device->angle_rad == 0 && settings->adapt.monitor == NULL && settings->size_count == 0;
+            settings->adapt.monitor == NULL && settings->size_count == 0;
   if (!*blocks) {
     return DEA_OK;
   }

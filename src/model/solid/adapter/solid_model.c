@@ -191,6 +191,7 @@ static dea_status make_whole(struct dea_context *ctx, const struct dea_model *mo
   struct dea_field_mesh *part = *mesh, *whole = NULL;
   if (model->disc) {
     part->fold = sector->fold;
+    part->symmetry_angle = sector->angle_rad;
     part->fibres = model->device->fibre_count;
   }
   if (sector->fold == 0 || model->disc) {
