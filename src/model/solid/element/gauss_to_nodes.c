@@ -61,20 +61,24 @@ void dea_fit_create_back(int order, int order_z, struct dea_gauss_fit *out)
   }
 }
 
-/* Along the second axis of [outer][n][inner], in place; rows of a table of struct dea_gauss_fit. */
+/* Along the second axis of [outer][n][inner], in place, by strips of the third; rows of a table of
+ * struct dea_gauss_fit. */
 static void fit_axis(const double *fit, int outer, int n, int inner, double *values)
 {
+  enum { STRIP = 16 };
   for (int o = 0; o < outer; o++) {
-    double *line = values + o * n * inner;
-    for (int x = 0; x < inner; x++) {
-      double sum[DEA_FIT_LINE_MAX] = {0};
+    for (int from = 0, count; from < inner; from += count) {
+      double sum[DEA_FIT_LINE_MAX][STRIP] = {{0}}, *line = values + o * n * inner + from;
+      count = inner - from < STRIP ? inner - from : STRIP;
       for (int i = 0; i < n; i++) {
         for (int q = 0; q < n; q++) {
-          sum[i] += fit[i * DEA_FIT_LINE_MAX + q] * line[q * inner + x];
+          for (int x = 0; x < count; x++) {
+            sum[i][x] += fit[i * DEA_FIT_LINE_MAX + q] * line[q * inner + x];
+          }
         }
       }
       for (int i = 0; i < n; i++) {
-        line[i * inner + x] = sum[i];
+        memcpy(line + i * inner, sum[i], (size_t)count * sizeof *line);
       }
     }
   }
