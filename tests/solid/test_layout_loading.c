@@ -398,6 +398,27 @@ TEST(test_pressure_limit)
   assert_in_range((int)(1e3 * 1e3 * limit_kPa[0] * R / (mu * H)), 1850, 1950);
 }
 
+/* A hub that is pulled far faster than the upper electrode, of a sheet resistance, can charge: what
+ * the film keeps of its charge then pulls less on it than the voltage would, and the force is
+ * larger; far slower it is that of ideal electrodes. */
+TEST(test_sheet_at_a_rate)
+{
+  static const double sheet_ohm[] = {0, 1e3, 1e14};
+  double force_N[3];
+  for (size_t i = 0; i < 3; i++) {
+    struct dea_device *device = cone_new();
+    device->layout->electrodes[1].sheet_resistance_ohm = sheet_ohm[i];
+    struct ran r = run(device,
+                       "{body: hub, direction: z, from: 0 mm, to: 2 mm, steps: 1, duration: 1 s,"
+                       " voltage: [2 kV]}",
+                       DEA_OK);
+    force_N[i] = point(&r, r.points->row_count - 1, "force_N");
+    end(&r, device);
+  }
+  assert_close(force_N[1], force_N[0], 1e-6, 0);
+  assert_true(force_N[2] > (1 + 1e-4) * force_N[0]);
+}
+
 /* A neo-Hookean film that is free in its plane, at a given charge: l^6 - 1 = D^2/(eps mu), D = Q
  * over the area at rest, V = D H/(eps l^4). By a quarter of it and by all. */
 TEST(test_free_charge)
