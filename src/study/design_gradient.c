@@ -13,11 +13,12 @@ static const double step_at_state = 1e-5, step_anew = 1e-4; // of a number, to e
 
 // Numbers ----------------------------------------------------------------------------------------
 
-static void add_number(struct dea_design_number *numbers, size_t *count,
-                       const struct dea_design_number *number)
+void dea_number_add(const struct dea_design_number *number, struct dea_design_number *out,
+                    size_t *count)
 {
-  if (*count < DEA_NUMBERS_MAX && number->value != 0 && !isnan(number->value)) {
-    numbers[(*count)++] = *number;
+  if (*count < DEA_NUMBERS_MAX && (number->value != 0 || number->reach > 0) &&
+      !isnan(number->value)) {
+    out[(*count)++] = *number;
   }
 }
 
@@ -32,15 +33,23 @@ static void take_material(void *user, const struct dea_material_number *of)
 {
   const struct materials *to = user;
   const char *material = (const char *)dea_material_of(to->device, of->material);
-  struct dea_design_number number = {.unit = of->unit,
-                                     .value = of->value,
-                                     .tolerance = NAN,
-                                     .of = DEA_NUMBER_OF_DEVICE,
-                                     .offset =
-                                         of->offset + (size_t)(material - (const char *)to->device),
-                                     .scale = 1};
+  const bool ply = of->material >= DEA_OF_PLIES;
+  struct dea_design_number number = {
+      .unit = of->unit,
+      .value = of->value,
+      .tolerance = NAN,
+      .of = ply ? DEA_NUMBER_OF_PLY : DEA_NUMBER_OF_DEVICE,
+      .item = ply ? of->material - DEA_OF_PLIES : 0,
+      .offset = of->offset + (ply ? 0 : (size_t)(material - (const char *)to->device)),
+      .scale = 1};
   snprintf(number.key, sizeof number.key, "%s", of->key);
-  add_number(to->numbers, to->count, &number);
+  dea_number_add(&number, to->numbers, to->count);
+}
+
+void dea_numbers_of_materials(const struct dea_device *device, bool plies,
+                              struct dea_design_number *out, size_t *count)
+{
+  dea_material_numbers(device, plies, take_material, &(struct materials){device, out, count});
 }
 
 /* A length of the workshop in a film state. */
@@ -113,7 +122,7 @@ static void add_key(const struct dea_design *design, const struct dea_record *re
     number.value = quantity->si / number.scale;
     number.tolerance =
         tolerance_of(design, number.key, number.value, inplane ? length->state : DEA_STRETCHED);
-    add_number(numbers, count, &number);
+    dea_number_add(&number, numbers, count);
   }
 }
 
@@ -126,7 +135,7 @@ dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *
   const struct dea_design_number voltage = {
       .key = "voltage", .value = voltage_V, .unit = "V", .tolerance = NAN, .scale = 1};
   *count = 0;
-  add_number(out, count, &voltage);
+  dea_number_add(&voltage, out, count);
   if (design->parts != NULL) {
     return dea_part_numbers(ctx, design, device, false, out, count);
   }
@@ -134,7 +143,7 @@ dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *
   for (size_t i = 0; i < design->values.count; i++) {
     add_key(design, &schema.disc.record, &design->values.items[i], out, count);
   }
-  dea_material_numbers(device, false, take_material, &(struct materials){device, out, count});
+  dea_numbers_of_materials(device, false, out, count);
   return DEA_OK;
 }
 
@@ -174,7 +183,7 @@ void dea_tip_numbers(const struct dea_pressed *pressed, struct dea_design_number
                                        .scale = 1};
     snprintf(number.key, sizeof number.key, "%s", all[i].key);
     memcpy(&number.value, (const char *)pressed + number.offset, sizeof number.value);
-    add_number(out, count, &number);
+    dea_number_add(&number, out, count);
   }
 }
 

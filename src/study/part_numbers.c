@@ -1,7 +1,6 @@
 #include "study/part_numbers.h"
 
 #include "design/schema_parts.h"
-#include "study/material_numbers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -45,15 +44,6 @@ static const struct dea_record *record_of(const struct list *list)
   return dea_parts_fields[i].record;
 }
 
-static void add(struct dea_design_number *out, size_t *count,
-                const struct dea_design_number *number)
-{
-  if (*count < DEA_NUMBERS_MAX && (number->value != 0 || number->reach > 0) &&
-      !isnan(number->value)) {
-    out[(*count)++] = *number;
-  }
-}
-
 // Keys of the file --------------------------------------------------------------------------------
 
 /* The numbers of a field of an item: one, or those of its list. size_m: of a shape; 0: of none. */
@@ -95,30 +85,8 @@ static void add_field(size_t at, size_t item, const char *base, const struct dea
       const size_t length = strlen(number.key);
       snprintf(number.key + length, sizeof number.key - length, "[%zu]", k);
     }
-    add(out, count, &number);
+    dea_number_add(&number, out, count);
   }
-}
-
-// Materials of plies -----------------------------------------------------------------------------
-
-/* What they go to. */
-struct numbers {
-  struct dea_design_number *out;
-  size_t *count;
-};
-
-static void take_material(void *user, const struct dea_material_number *of)
-{
-  const struct numbers *to = user;
-  struct dea_design_number number = {.unit = of->unit,
-                                     .value = of->value,
-                                     .tolerance = NAN,
-                                     .of = DEA_NUMBER_OF_PLY,
-                                     .item = of->material - DEA_OF_PLIES,
-                                     .offset = of->offset,
-                                     .scale = 1};
-  snprintf(number.key, sizeof number.key, "%s", of->key);
-  add(to->out, to->count, &number);
 }
 
 // Shapes -----------------------------------------------------------------------------------------
@@ -217,7 +185,7 @@ dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *de
       out[i].tolerance = tolerance_of(design, &out[i]);
     }
   }
-  dea_material_numbers(device, true, take_material, &(struct numbers){out, count});
+  dea_numbers_of_materials(device, true, out, count);
   DEA_TRY(ctx, add_shapes(ctx, design->parts, device, all, out, count));
   return DEA_OK;
 }
