@@ -86,10 +86,11 @@ static double tolerance_of(const struct dea_design *design, const char *key, dou
   return tip ? in_state(&f->tolerance.fibre, state, l) : NAN;
 }
 
-/* Sections of a design that its device does not depend on. */
+/* What of a design its device does not depend on, or only by being turned. */
 static bool is_aside(const char *key)
 {
-  static const char *const sections[] = {"compute.", "report.", "fabrication.", "drive."};
+  static const char *const sections[] = {"compute.", "report.", "fabrication.", "drive.",
+                                         "fibres.angle"};
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
     if (strncmp(key, sections[i], strlen(sections[i])) == 0) {
       return strcmp(key, "compute.coverage") != 0;

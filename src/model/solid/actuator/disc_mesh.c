@@ -99,8 +99,10 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_device *d
                              struct dea_layout_mesh *mesh)
 {
   const struct dea_fibre_disc *p = &mesh->plate;
+  struct dea_device disc = *device;
   bool fit;
-  DEA_TRY(ctx, dea_disc_layout_create(ctx, device, mesh->membrane, &mesh->own));
+  disc.angle_rad = mesh->sector.angle_rad;
+  DEA_TRY(ctx, dea_disc_layout_create(ctx, &disc, mesh->membrane, &mesh->own));
   DEA_TRY(ctx, dea_disc_layout_add_monitors(ctx, device, mesh->own, &fit));
   if (!fit) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a monitor's region");
@@ -110,8 +112,8 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_device *d
   }
   mesh->layout = mesh->own;
   DEA_TRY(ctx, dea_fibre_disc_plane(ctx, p, &mesh->cuts, &mesh->plane));
-  const struct dea_motion turn = dea_motion_rotation((double[2]){0, 0}, device->angle_rad);
-  for (size_t i = 0; i < mesh->plane->node_count && device->angle_rad != 0; i++) {
+  const struct dea_motion turn = dea_motion_rotation((double[2]){0, 0}, disc.angle_rad);
+  for (size_t i = 0; i < mesh->plane->node_count && disc.angle_rad != 0; i++) {
     dea_motion_apply(&turn, mesh->plane->x + 2 * i, mesh->plane->x + 2 * i);
   }
   DEA_TRY(ctx, name_groups(ctx, mesh));
@@ -130,7 +132,7 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
       .disc = device,
       .cuts = like != NULL ? like->cuts : *plate,
       .membrane = plate->membrane,
-      .sector = {.angle_rad = device->angle_rad,
+      .sector = {.angle_rad = like != NULL ? like->sector.angle_rad : device->angle_rad,
                  .fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
       .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
   DEA_TRY_ELSE(ctx, make_plane(ctx, device, out), dea_layout_mesh_free(ctx, out));
