@@ -110,9 +110,25 @@ void dea_context_clear(struct dea_context *ctx);
       return dea_fail_chain((ctx), dea_try_status_, __func__, __FILE__, __LINE__);                 \
     }                                                                                              \
   } while (0)
-
+/* The same, after `otherwise`, an expression that frees what the function has made. */
+#define DEA_TRY_ELSE(ctx, call, otherwise)                                                         \
+  do {                                                                                             \
+    dea_status dea_try_status_ = (call);                                                           \
+    if (dea_try_status_ != DEA_OK) {                                                               \
+      (otherwise);                                                                                 \
+      return dea_fail_chain((ctx), dea_try_status_, __func__, __FILE__, __LINE__);                 \
+    }                                                                                              \
+  } while (0)
 /* What the last call of a function gives, passed on the same way. */
 #define DEA_CHAIN(ctx, call) dea_fail_chain((ctx), (call), __func__, __FILE__, __LINE__)
+/* Returns the status of `call` from a function that has no context, unless it is DEA_OK. */
+#define DEA_TRY_STATUS(call)                                                                       \
+  do {                                                                                             \
+    dea_status dea_try_status_ = (call);                                                           \
+    if (dea_try_status_ != DEA_OK) {                                                               \
+      return dea_try_status_;                                                                      \
+    }                                                                                              \
+  } while (0)
 /* Returns DEA_E_MEMORY, which the context knows of, where there is not what was asked for. */
 #define DEA_TRY_MEMORY(there)                                                                      \
   do {                                                                                             \

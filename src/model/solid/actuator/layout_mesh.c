@@ -252,7 +252,7 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
   const double layer_m = rows ? (fringe ? fringe_share : layer_share) * film_thickness_m(l) : 0;
   struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
   struct dea_gmsh_shape *curves = dea_arena_alloc(memory, l->region_count, sizeof *curves);
-  DEA_NEED(shapes != NULL && curves != NULL);
+  DEA_TRY_MEMORY(shapes != NULL && curves != NULL);
   *plan = (struct dea_gmsh_plan){.shapes = shapes,
                                  .curves = curves,
                                  .order = settings->order == 1 ? 1 : 2,

@@ -84,7 +84,7 @@ dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *s
     return DEA_OK;
   }
   double *push = dea_solid_alloc(ctx, 3 * grid->node_count, sizeof *push);
-  DEA_NEED(push != NULL);
+  DEA_TRY_MEMORY(push != NULL);
   set_push(&wanted, dea_solid_displacement(solid), push);
   dea_status status = dea_solid_perturb(ctx, solid, push, on_side, &wanted, report, moved);
   dea_free(ctx, push);

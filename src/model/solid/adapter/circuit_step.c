@@ -267,7 +267,7 @@ dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_dri
 {
   struct dea_circuit_step *d = dea_solid_alloc(ctx, 1, sizeof *d);
   *out = NULL;
-  DEA_NEED(d != NULL);
+  DEA_TRY_MEMORY(d != NULL);
   d->memory.ctx = ctx;
   d->driven = *driven;
   d->options = *time;

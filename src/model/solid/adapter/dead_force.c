@@ -87,7 +87,7 @@ dea_status dea_dead_force_add(struct dea_context *ctx, const struct dea_layout_m
   const struct dea_grid *g = mesh->grid;
   double *share = dea_alloc(ctx, g->node_count, sizeof *share), total = 0;
   struct rule rule;
-  DEA_NEED(share != NULL);
+  DEA_TRY_MEMORY(share != NULL);
   make_rule(g, &rule);
   dea_layout_mesh_mark(mesh, support->region, support->edge, support->within, room);
   for (int inside = 1; inside >= 0 && total == 0; inside--) { // an edge has two sides

@@ -686,7 +686,7 @@ static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradie
   dea_solid_restore_state(s, &owner->outcome->at_limit);
   there.voltage_V = dea_solid_voltage(s);
   w.null_mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *w.null_mode);
-  DEA_NEED(w.null_mode != NULL);
+  DEA_TRY_MEMORY(w.null_mode != NULL);
   s->work.takes_small_pivots = true;
   dea_status status = dea_adjoint_create(ctx, s, OF_LIMIT, &w.adjoint);
   s->work.takes_small_pivots = false;

@@ -100,7 +100,7 @@ dea_status dea_indent_create(struct dea_context *ctx, const struct dea_layout_me
 {
   const struct dea_pressed pressed = {*probe, -1e-3 * probe->radius_m};
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   dea_status status = prepare(ctx, mesh, &pressed, *out);
   if (status == DEA_OK) {
     const struct dea_solid_load load = dea_contact_load((*out)->contact);
@@ -139,7 +139,7 @@ dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_l
                                      const struct dea_indent *other, struct dea_indent **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   dea_status status = prepare(ctx, mesh, pressed, *out);
   if (status != DEA_OK) {
     dea_indent_destroy(ctx, *out);

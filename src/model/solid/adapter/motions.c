@@ -64,7 +64,7 @@ static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *
   size_t dofs = 3 * m->grid->node_count;
   double *u = dea_solid_displacement(m->solid), *keep = dea_solid_alloc(ctx, dofs, sizeof *keep);
   double scale = little * largest(m->grid->X, dofs) / largest(v, dofs);
-  DEA_NEED(keep != NULL);
+  DEA_TRY_MEMORY(keep != NULL);
   memcpy(keep, u, dofs * sizeof *u);
   for (size_t i = 0; i < dofs; i++) {
     u[i] = scale * v[i];
@@ -122,7 +122,7 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
   size_t dofs = 3 * m->grid->node_count;
   double *memory = dea_solid_alloc(ctx, count + (2 + count) * dofs, sizeof *memory);
   *shapes = NULL;
-  DEA_NEED(memory != NULL);
+  DEA_TRY_MEMORY(memory != NULL);
   dea_status status = take_modes(ctx, m, ply, at, count, memory, points, shapes);
   dea_free(ctx, memory);
   return status;
@@ -236,7 +236,7 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
                                       excitation->damping_stiffness_s};
   struct answers out = {m, points};
   double *rad_per_s = dea_solid_alloc(ctx, count, sizeof *rad_per_s);
-  DEA_NEED(rad_per_s != NULL);
+  DEA_TRY_MEMORY(rad_per_s != NULL);
   for (size_t i = 0; i < count; i++) {
     rad_per_s[i] = 2 * pi * frequency_Hz[i];
     points[i] = *at;

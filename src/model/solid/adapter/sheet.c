@@ -715,7 +715,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
     sheet->first[i] = first_of(sheet, i);
   }
   bool *marks = dea_solid_alloc(ctx, electrodes + sheet->columns, sizeof *marks);
-  DEA_NEED(marks != NULL);
+  DEA_TRY_MEMORY(marks != NULL);
   number(sheet, marks, marks + electrodes);
   dea_free(ctx, marks);
   find_cells(sheet);
@@ -745,7 +745,7 @@ dea_status dea_sheet_create(struct dea_context *ctx, const struct dea_layout_mes
                     "a coupled field has ideal electrodes in time: no sheet_resistance");
   }
   struct dea_sheet *sheet = dea_solid_alloc(ctx, 1, sizeof *sheet);
-  DEA_NEED(sheet != NULL);
+  DEA_TRY_MEMORY(sheet != NULL);
   sheet->memory.ctx = ctx;
   sheet->mesh = mesh;
   sheet->solid = solid;

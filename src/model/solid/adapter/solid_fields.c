@@ -14,7 +14,7 @@ static dea_status find_potentials(struct dea_context *ctx, const struct dea_soli
     return DEA_OK;
   }
   *out = dea_alloc(ctx, p->grid->node_count, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   for (size_t n = 0; n < p->grid->node_count; n++) {
     (*out)[n] = dea_solid_field_scale(s) * s->state.u[3 * p->grid->node_count + n];
   }

@@ -296,7 +296,7 @@ static dea_status set_weight(struct dea_context *ctx, const struct dea_model *mo
   }
   DEA_TRY(ctx, dea_solid_check_densities(ctx, model));
   double *fall = dea_solid_alloc(ctx, count, sizeof *fall);
-  DEA_NEED(fall != NULL);
+  DEA_TRY_MEMORY(fall != NULL);
   for (size_t i = 0; i < 3 * model->mesh_node_count; i++) {
     fall[i] = model->layout->gravity_m_per_s2[i % 3];
   }

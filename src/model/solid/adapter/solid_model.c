@@ -157,7 +157,7 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
   double *answers = dea_resize(ctx, model->answers, 2 * count * width + 1, sizeof *answers);
   model->answers = answers != NULL ? answers : model->answers;
-  DEA_NEED(!dea_solid_allreduce_any(answers == NULL));
+  DEA_TRY_MEMORY(!dea_solid_allreduce_any(answers == NULL));
   if (dea_layout_has_sheet_resistance(model->layout)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "an excitation by electrodes with a sheet resistance is known in "
@@ -287,7 +287,7 @@ static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
   double *weight = NULL;
   if (model->disc) {
     weight = dea_solid_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
-    DEA_NEED(weight != NULL);
+    DEA_TRY_MEMORY(weight != NULL);
     dea_observer_column_gradient(model->observer, model->solid,
                                  dea_point_column_find("electrode_edge_u_m"), weight);
     end.weight = weight;
@@ -304,7 +304,7 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
                        struct dea_load_point *out, bool *found)
 {
   double *fold = dea_solid_alloc(ctx, 3 * model->mesh.grid->node_count, sizeof *fold);
-  DEA_NEED(fold != NULL);
+  DEA_TRY_MEMORY(fold != NULL);
   dea_buckling_branch_fold(model->solid, model->mesh.grid, &model->band, way->side, fold);
   dea_status status = dea_solver_state_push(ctx, &model->at, way, fold, out, found);
   dea_free(ctx, fold);
@@ -499,7 +499,7 @@ static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct de
 {
   size_t most = (size_t)a->settings.adapt.passes;
   a->pass = dea_solid_alloc(ctx, most, sizeof *a->pass);
-  DEA_NEED(a->pass != NULL);
+  DEA_TRY_MEMORY(a->pass != NULL);
   for (bool on = true; on;) {
     struct dea_adapt_pass *pass = &a->pass[a->count];
     DEA_TRY(ctx, look_at_mesh(ctx, a, *model, pass));

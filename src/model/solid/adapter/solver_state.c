@@ -228,7 +228,7 @@ dea_status dea_solver_state_soften(struct dea_context *ctx, struct dea_model *mo
     return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d soft modes can be asked for", DEA_SOFT_MODES_MAX);
   }
   solver_state->soft = dea_solid_alloc(ctx, count * moves, sizeof *solver_state->soft);
-  DEA_NEED(solver_state->soft != NULL);
+  DEA_TRY_MEMORY(solver_state->soft != NULL);
   DEA_TRY(ctx, dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, count, stiffness_N_per_m4,
                                       solver_state->soft));
   solver_state->soft_count = count;
@@ -288,7 +288,7 @@ dea_status dea_solver_state_push(struct dea_context *ctx, struct dea_solver_stat
                     push->mode + 1, solver_state->soft_count, push->parts);
   }
   double *way = dea_solid_alloc(ctx, moves, sizeof *way);
-  DEA_NEED(way != NULL);
+  DEA_TRY_MEMORY(way != NULL);
   set_push(grid, push, folds ? NULL : solver_state->soft + push->mode * moves, fold, way);
   dea_status status =
       dea_solid_perturb(ctx, owner->solid, way, NULL, NULL, &solver_state->report, found);
@@ -307,7 +307,7 @@ dea_status dea_solver_state_transfer(struct dea_context *ctx, struct dea_solver_
   dea_solver_state_end_history(ctx, solver_state);
   *found = false;
   double *u = dea_solid_alloc(ctx, 3 * grid->node_count, sizeof *u);
-  DEA_NEED(u != NULL);
+  DEA_TRY_MEMORY(u != NULL);
   dea_status status = dea_grid_transfer(ctx, other->problem.grid, other->state.u, grid, u);
   status = status == DEA_OK ? dea_solid_transfer_solution(ctx, owner->solid, from->voltage_V, u,
                                                           &solver_state->report, found)

@@ -261,7 +261,7 @@ static dea_status fail_element(struct dea_context *ctx, const struct dea_solid *
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], x[3] = {0};
   const struct dea_element_input in = {
       .part_material = dea_solid_part_material(s, e), .X = X, .u = u};
-  DEA_NEED(strains != NULL);
+  DEA_TRY_MEMORY(strains != NULL);
   int count = dea_solid_gather(s, e, s->problem.grid->X, X);
   dea_solid_gather(s, e, s->state.u, u);
   bool inverted = status == DEA_E_DOMAIN && element->type->strains(element, &in, strains) != DEA_OK;

@@ -137,7 +137,7 @@ static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s,
   const double stiff = DEA_SOLID_STIFF * s->state.bulk_factor;
   const size_t pressures = dea_solid_pressure_count(s);
   double *own = dea_solid_alloc(ctx, pressures + 1, sizeof *own);
-  DEA_NEED(own != NULL);
+  DEA_TRY_MEMORY(own != NULL);
   memcpy(own, s->state.multiplier, pressures * sizeof *own);
   dea_solid_update_multipliers(s);
   dea_solid_drop_bulk_modulus(s);
@@ -153,7 +153,7 @@ dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, si
 {
   const size_t dofs = s->problem.dofs;
   struct capacity *capacity = dea_solid_alloc(ctx, 1, sizeof *capacity);
-  DEA_NEED(capacity != NULL);
+  DEA_TRY_MEMORY(capacity != NULL);
   memset(out, 0, count * sizeof *out);
   memset(s->work.g, 0, dofs * sizeof *s->work.g);
   dea_status status = dea_solid_allreduce(ctx, add_pieces(ctx, s, capacity, count, v, out));

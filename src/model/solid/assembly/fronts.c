@@ -10,7 +10,7 @@
 #include "model/solid/assembly/fronts.h"
 
 #include "base/arena.h"
-#include "model/solid/point/try.h"
+#include "base/context.h"
 
 #include <petscblaslapack.h>
 
@@ -419,7 +419,7 @@ dea_status dea_fronts_create(struct dea_context *ctx, Mat K, struct dea_fronts *
   PetscBool there;
   *out = NULL;
   struct dea_fronts *f = dea_alloc(ctx, 1, sizeof *f);
-  DEA_NEED(f != NULL);
+  DEA_TRY_MEMORY(f != NULL);
   f->memory.ctx = ctx;
   dea_status status = dea_solid_petsc(
       ctx, MatGetRowIJ(K, 0, PETSC_FALSE, PETSC_TRUE, &nodes, &a.ptr, &a.index, &there),

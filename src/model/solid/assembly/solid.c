@@ -111,7 +111,7 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
 {
   *out = NULL;
   struct dea_solid *s = dea_solid_alloc(ctx, 1, sizeof *s);
-  DEA_NEED(s != NULL);
+  DEA_TRY_MEMORY(s != NULL);
   struct dea_solid_problem *p = &s->problem;
   s->memory.ctx = ctx;
   s->settings = options->settings != NULL ? *options->settings : dea_solid_settings_default();
@@ -213,7 +213,7 @@ dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
 {
   struct dea_solid_load *loads =
       dea_resize(ctx, solid->problem.loads, solid->problem.load_count + 1, sizeof *loads);
-  DEA_NEED(loads != NULL);
+  DEA_TRY_MEMORY(loads != NULL);
   solid->problem.loads = loads;
   loads[solid->problem.load_count++] = *load;
   return DEA_OK;

@@ -23,7 +23,7 @@ dea_status dea_element_set_create(struct dea_context *ctx, int order, int order_
     struct dea_element *e = &out->of[kind];
     e->type = dea_element_types[kind];
     e->basis = dea_alloc(ctx, 1, e->type->basis_size);
-    DEA_NEED(e->basis != NULL);
+    DEA_TRY_MEMORY(e->basis != NULL);
     dea_status status = e->type->create(order, order_z, e);
     if (status != DEA_OK) {
       return dea_fail(ctx, status, "elements have the orders 1 to %d, not %d and %d",

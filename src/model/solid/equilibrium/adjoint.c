@@ -154,7 +154,7 @@ dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, 
 {
   struct dea_adjoint *a = dea_solid_alloc(ctx, 1, sizeof *a);
   *out = NULL;
-  DEA_NEED(a != NULL);
+  DEA_TRY_MEMORY(a != NULL);
   *a = (struct dea_adjoint){.memory = {.ctx = ctx}, .s = solid, .count = count};
   DEA_TRY_ELSE(ctx, prepare(ctx, a), dea_adjoint_destroy(ctx, a));
   *out = a;

@@ -622,7 +622,7 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
   for (size_t i = 0; i < sizeof of_states / sizeof of_states[0]; i++) {
     *of_states[i] = dea_arena_alloc(&t->memory, states, sizeof(double));
   }
-  DEA_NEED(!dea_solid_allreduce_any(t->memory.failed));
+  DEA_TRY_MEMORY(!dea_solid_allreduce_any(t->memory.failed));
   double volume = 0;
   dea_solid_lump_volume(s, t->metric);
   for (size_t i = 0; i < p->dofs; i++) {
@@ -681,7 +681,7 @@ dea_status dea_continuation_create_to(struct dea_context *ctx, struct dea_solid 
 {
   *out = NULL;
   struct dea_solid_continuation *t = dea_solid_alloc(ctx, 1, sizeof *t);
-  DEA_NEED(t != NULL);
+  DEA_TRY_MEMORY(t != NULL);
   t->s = s;
   dea_status status = allocate_path(ctx, s, options, t);
   status = status == DEA_OK ? begin_path(ctx, t, goal, options->step) : status;
@@ -701,7 +701,7 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
   }
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   double *goal = dea_solid_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
-  DEA_NEED(goal != NULL);
+  DEA_TRY_MEMORY(goal != NULL);
   dea_solid_controls_goal(s, voltage_V, goal);
   dea_status status = dea_continuation_create_to(ctx, s, goal, options, out);
   dea_free(ctx, goal);
@@ -740,7 +740,7 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
   size_t count = b->mode + 1, dofs = 3 * s->problem.grid->node_count;
   double values[DEA_MODES_MAX];
   double *vectors = dea_solid_alloc(ctx, count * dofs, sizeof *vectors);
-  DEA_NEED(vectors != NULL);
+  DEA_TRY_MEMORY(vectors != NULL);
   dea_status status = dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_VOLUME, count, values, vectors);
   *value = values[b->mode];
   memcpy(t->mode, vectors + b->mode * dofs, dofs * sizeof *t->mode);

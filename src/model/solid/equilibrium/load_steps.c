@@ -157,7 +157,7 @@ dea_status dea_solid_perturb(struct dea_context *ctx, struct dea_solid *s, const
   *found = false;
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   double *state = dea_solid_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
-  DEA_NEED(state != NULL);
+  DEA_TRY_MEMORY(state != NULL);
   dea_solid_state_get(s, state);
   dea_status status = solve_pushed(ctx, s, push_m, report);
   if (status == DEA_OK && report->unstable_modes > 0 && accept == NULL) {

@@ -274,7 +274,7 @@ static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_
   f->memory.ctx = ctx;
   f->order = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->order);
   f->value = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->value);
-  DEA_NEED(!dea_solid_allreduce_any(f->memory.failed));
+  DEA_TRY_MEMORY(!dea_solid_allreduce_any(f->memory.failed));
   DEA_TRY(ctx, create_metric(ctx, f->solid, metric, &f->B));
   DEA_PETSC(ctx, VecDuplicateVecs(f->solid->work.right, f->capacity, &f->vectors));
   if (unstable > 0) {

@@ -179,7 +179,7 @@ static dea_status check_supports(struct dea_context *ctx, const struct dea_solid
   const struct dea_solid_problem *p = &s->problem;
   int *parent = dea_alloc(ctx, p->grid->node_count, sizeof *parent);
   dea_status status = DEA_OK;
-  DEA_NEED(parent != NULL);
+  DEA_TRY_MEMORY(parent != NULL);
   for (size_t n = 0; n < p->grid->node_count; n++) {
     parent[n] = (int)n;
   }
@@ -219,7 +219,7 @@ dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
     return DEA_OK;
   }
   struct dea_element_strains *strains = dea_alloc(ctx, 1, sizeof *strains);
-  DEA_NEED(strains != NULL);
+  DEA_TRY_MEMORY(strains != NULL);
   dea_status status = DEA_OK;
   for (size_t e = 0; e < s->problem.grid->element_count && status == DEA_OK; e++) {
     status = check_element(ctx, s, e, strains);

@@ -228,7 +228,7 @@ static dea_status look_at_modes(struct dea_context *ctx, const struct search *a,
     return DEA_OK;
   }
   double *mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *mode);
-  DEA_NEED(mode != NULL);
+  DEA_TRY_MEMORY(mode != NULL);
   dea_status status = dea_solid_unstable_mode(ctx, s, &value, mode);
   if (status == DEA_OK && leaves_plane(s, mode)) {
     *of_mesh = unstable;

@@ -29,7 +29,7 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
                     "contact needs a stiffness above 0 and a tolerance of 0 or more");
   }
   struct dea_contact *c = dea_alloc(ctx, 1, sizeof *c);
-  DEA_NEED(c != NULL);
+  DEA_TRY_MEMORY(c != NULL);
   c->surface = surface;
   c->tip = tip;
   c->stiffness = options->stiffness_Pa_per_m;

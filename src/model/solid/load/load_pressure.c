@@ -22,7 +22,7 @@ dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface
                                const double origin_m[3], struct dea_pressure **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   (*out)->surface = surface;
   memcpy((*out)->origin, origin_m, sizeof(*out)->origin);
   dea_face_shape_create(surface, DEA_FACE_GAUSS, &(*out)->shape);

@@ -57,7 +57,7 @@ dea_status dea_spring_create(struct dea_context *ctx, const struct dea_spring_op
   *out = NULL;
   DEA_TRY(ctx, check_options(ctx, options));
   struct dea_spring *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_NEED(s != NULL);
+  DEA_TRY_MEMORY(s != NULL);
   s->node = options->node;
   s->component = (size_t)options->component;
   s->unit_m = options->unit_m > 0 ? options->unit_m : 1;

@@ -13,8 +13,8 @@
  * alpha    angle of a sector, pi/N                                              rad */
 #include "model/solid/mesh/fibre_disc.h"
 
+#include "base/context.h"
 #include "model/solid/mesh/cuts.h"
-#include "model/solid/point/try.h"
 
 #include <math.h>
 #include <string.h>
@@ -499,7 +499,7 @@ dea_status dea_fibre_disc_plane(struct dea_context *ctx, const struct dea_fibre_
 {
   *out = NULL;
   struct builder *b = dea_alloc(ctx, 1, sizeof *b);
-  DEA_NEED(b != NULL);
+  DEA_TRY_MEMORY(b != NULL);
   dea_status status = build(ctx, plate, like, b, out);
   dea_free(ctx, b);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

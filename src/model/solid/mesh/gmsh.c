@@ -6,6 +6,7 @@
 #include "model/solid/mesh/gmsh.h"
 
 #include "base/arena.h"
+#include "base/context.h"
 #include "base/file.h"
 #include "base/program.h"
 #include "base/text.h"
@@ -13,7 +14,6 @@
 #include "base/write_file.h"
 #include "model/solid/mesh/edge_layers.h"
 #include "model/solid/mesh/msh_read.h"
-#include "model/solid/point/try.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -398,7 +398,7 @@ static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *p
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, run_gmsh(ctx, plan, folder, said));
   char *mesh = dea_path_join(ctx, folder, "mesh.msh");
-  DEA_NEED(mesh != NULL);
+  DEA_TRY_MEMORY(mesh != NULL);
   char *text = NULL;
   size_t length;
   if (!dea_path_exists(mesh)) {
@@ -526,7 +526,7 @@ static dea_status take_edges(struct dea_context *ctx, const struct dea_gmsh_plan
   size_t per = (size_t)mesh->order + 1, curves = plan->shape_count + plan->curve_count;
   mesh->edges = dea_alloc(ctx, before_count * curves, per * sizeof *mesh->edges);
   mesh->edge_curve = dea_alloc(ctx, before_count * curves, sizeof *mesh->edge_curve);
-  DEA_NEED(mesh->edges != NULL && mesh->edge_curve != NULL);
+  DEA_TRY_MEMORY(mesh->edges != NULL && mesh->edge_curve != NULL);
   for (size_t i = 0; i < before_count; i++) {
     for (size_t k = 0; k < curves; k++) {
       bool on = true;

@@ -122,7 +122,7 @@ static void extrude(const struct dea_plane_mesh *m, const struct dea_stack *stac
 static dea_status compact(struct dea_context *ctx, struct dea_grid *grid)
 {
   int *number = dea_alloc(ctx, grid->node_count, sizeof *number);
-  DEA_NEED(number != NULL);
+  DEA_TRY_MEMORY(number != NULL);
   for (size_t e = 0; e < grid->element_count; e++) {
     for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
       number[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]] = 1;
@@ -166,7 +166,7 @@ dea_status dea_grid_allocate(struct dea_context *ctx, int order, int order_z, si
 {
   struct dea_grid *grid = dea_alloc(ctx, 1, sizeof *grid);
   *out = NULL;
-  DEA_NEED(grid != NULL);
+  DEA_TRY_MEMORY(grid != NULL);
   struct dea_arena *memory = &grid->memory;
   memory->ctx = ctx;
   grid->order = order;

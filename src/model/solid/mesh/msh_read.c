@@ -3,10 +3,10 @@
  * brought into the order of nodes of the project's elements. */
 #include "model/solid/mesh/msh_read.h"
 
+#include "base/context.h"
 #include "base/file.h"
 #include "base/write_file.h"
 #include "model/solid/mesh/places.h"
-#include "model/solid/point/try.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -221,7 +221,7 @@ static dea_status add_physical(struct reader *r, int dimension, long long tag,
                                struct physical **out)
 {
   *out = list_add(r->ctx, &r->physicals, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   (*out)->dimension = dimension;
   (*out)->tag = tag;
   (*out)->index = SIZE_MAX;
@@ -275,7 +275,7 @@ static dea_status read_entities(struct reader *r)
       DEA_TRY(r->ctx, read_count(r, "a number of groups", &groups));
       for (size_t k = 0; k < groups; k++) {
         struct member *member = list_add(r->ctx, &r->members, sizeof *member);
-        DEA_NEED(member != NULL);
+        DEA_TRY_MEMORY(member != NULL);
         *member = (struct member){.dimension = dimension, .entity = tag};
         DEA_TRY(r->ctx, read_int(r, "the number of a group", &member->physical));
         member->physical = llabs(member->physical); // negative: the other way round
@@ -292,7 +292,7 @@ static dea_status read_entities(struct reader *r)
 static dea_status add_node(struct reader *r, long long tag, struct raw_node **out)
 {
   *out = list_add(r->ctx, &r->nodes, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   (*out)->tag = tag;
   return DEA_OK;
 }
@@ -363,7 +363,7 @@ static dea_status find_kind(struct reader *r, long long type, const struct kind 
 static dea_status read_element(struct reader *r, const struct kind *kind, long long group)
 {
   struct raw_element *element = list_add(r->ctx, &r->elements, sizeof *element);
-  DEA_NEED(element != NULL);
+  DEA_TRY_MEMORY(element != NULL);
   *element = (struct raw_element){.kind = kind, .group = group, .line = r->line};
   for (int n = 0; n < kind->nodes; n++) {
     DEA_TRY(r->ctx, read_int(r, "the number of a node", &element->nodes[n]));
@@ -782,7 +782,7 @@ static dea_status add_line(struct reader *r, const struct raw_element *e, double
       continue; // two numbers of one name
     }
     int *edge = list_add(r->ctx, curves, (size_t)(per + 1) * sizeof *edge);
-    DEA_NEED(edge != NULL);
+    DEA_TRY_MEMORY(edge != NULL);
     edge[0] = index;
     // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): per is 2 or 3
     edge[1] = nodes[0];
@@ -803,7 +803,7 @@ static dea_status take_edges(struct reader *r, const struct list *curves,
   const int *from = curves->data;
   mesh->edges = dea_alloc(r->ctx, curves->count * per, sizeof *mesh->edges);
   mesh->edge_curve = dea_alloc(r->ctx, curves->count, sizeof *mesh->edge_curve);
-  DEA_NEED(mesh->edges != NULL && mesh->edge_curve != NULL);
+  DEA_TRY_MEMORY(mesh->edges != NULL && mesh->edge_curve != NULL);
   for (size_t i = 0; i < curves->count; i++, from += per + 1) {
     mesh->edge_curve[i] = from[0];
     memcpy(mesh->edges + i * per, from + 1, per * sizeof *from);
@@ -858,7 +858,7 @@ static dea_status build(struct reader *r, double unit_m, struct dea_plane_mesh *
   sort_elements(r, &s);
   size_t capacity = s.quads * (size_t)((s.order + 1) * (s.order + 1)) + 3; // and one line's
   *out = dea_plane_mesh_create(r->ctx, s.order, capacity, s.quads);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   (*out)->quad_count = 0;
   DEA_TRY(r->ctx, dea_places_create(r->ctx, (*out)->x, capacity, same * s.size * unit_m, &places));
   dea_status status = fill(r, &s, unit_m, &places, *out);

@@ -1,6 +1,6 @@
 #include "model/solid/mesh/places.h"
 
-#include "model/solid/point/try.h"
+#include "base/context.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -17,7 +17,7 @@ dea_status dea_places_create(struct dea_context *ctx, double *x, size_t capacity
 {
   *out = (struct dea_places){.x = x, .close = close, .table_size = 2 * capacity + 1};
   out->table = dea_alloc(ctx, out->table_size, sizeof *out->table);
-  DEA_NEED(out->table != NULL);
+  DEA_TRY_MEMORY(out->table != NULL);
   dea_places_empty(out);
   return DEA_OK;
 }

@@ -1,6 +1,6 @@
 #include "model/solid/mesh/plane_mesh.h"
 
-#include "model/solid/point/try.h"
+#include "base/context.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -61,10 +61,10 @@ void dea_plane_mesh_destroy(struct dea_context *ctx, struct dea_plane_mesh *mesh
 static dea_status add_name(struct dea_context *ctx, char ***names, size_t *count, const char *name)
 {
   char **moved = dea_resize(ctx, *names, *count + 1, sizeof *moved);
-  DEA_NEED(moved != NULL);
+  DEA_TRY_MEMORY(moved != NULL);
   *names = moved;
   moved[*count] = dea_copy_text(ctx, name, strlen(name));
-  DEA_NEED(moved[*count] != NULL);
+  DEA_TRY_MEMORY(moved[*count] != NULL);
   (*count)++;
   return DEA_OK;
 }
@@ -90,7 +90,7 @@ dea_status dea_plane_mesh_region(struct dea_context *ctx, struct dea_plane_mesh 
   }
   if (k == mesh->region_count) {
     unsigned char *moved = dea_resize(ctx, mesh->within, k + 1, n);
-    DEA_NEED(moved != NULL);
+    DEA_TRY_MEMORY(moved != NULL);
     mesh->within = moved;
     memcpy(moved + k * n, within, n);
     mesh->region_count++;

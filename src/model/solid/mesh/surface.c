@@ -43,7 +43,7 @@ dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum de
   int local[DEA_FACE_NODES_MAX];
   *out = NULL;
   struct dea_surface *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_NEED(s != NULL);
+  DEA_TRY_MEMORY(s != NULL);
   s->grid = grid;
   s->nodes = dea_alloc(ctx, grid->element_count, DEA_FACE_NODES_MAX * sizeof *s->nodes);
   s->element = dea_alloc(ctx, grid->element_count, sizeof *s->element);

@@ -223,7 +223,7 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
     return dea_fail(ctx, DEA_E_ARGUMENT, "a spectral radius lies between 0 and 1");
   }
   struct dea_solid_time *t = dea_solid_alloc(ctx, 1, sizeof *t);
-  DEA_NEED(t != NULL);
+  DEA_TRY_MEMORY(t != NULL);
   t->memory.ctx = ctx;
   t->solid = solid;
   t->inertial = options->inertia;

@@ -8,9 +8,9 @@
  * part material of a compressible law (fibre) has W alone of the first line. */
 #pragma once
 
+#include "base/context.h"
 #include "material/material.h"
 #include "material/point.h"
-#include "model/solid/point/try.h"
 
 #include <math.h>
 

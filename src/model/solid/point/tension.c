@@ -1,6 +1,6 @@
 #include "model/solid/point/tension.h"
 
-#include "model/solid/point/try.h"
+#include "base/context.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 #include "model/solid/recovery/line_profile.h"
 
 #include "base/arena.h"
+#include "base/context.h"
 #include "base/quadrature.h"
-#include "model/solid/point/try.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -138,7 +138,7 @@ static dea_status fill(struct dea_context *ctx, struct work *w, double plus, dou
   add_ray(w, minus, -1);
   qsort(w->rows, w->row_count, sizeof *w->rows, compare_rows);
   double *to = dea_alloc(ctx, w->row_count, COLUMNS * sizeof *to);
-  DEA_NEED(to != NULL);
+  DEA_TRY_MEMORY(to != NULL);
   size_t n = w->row_count;
   for (size_t i = 0; i < n; i++) {
     for (size_t c = 0; c < COLUMNS; c++) {

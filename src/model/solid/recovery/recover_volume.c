@@ -69,7 +69,7 @@ static dea_status add_column(struct work *w, size_t from, size_t end)
 {
   double force[DEA_ELEMENT_LEVEL_MAX][6] = {{0}};
   struct dea_recovered *at = dea_alloc(w->ctx, 1, sizeof *at);
-  DEA_NEED(at != NULL);
+  DEA_TRY_MEMORY(at != NULL);
   for (size_t k = from; k < end; k++) {
     size_t e = w->stack[k].element;
     dea_status status = dea_recover_element(w->in, e, at);
