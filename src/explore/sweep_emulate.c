@@ -104,11 +104,17 @@ static dea_status find_shares(const struct work *w, const struct dea_sweep_optio
   return DEA_OK;
 }
 
-static dea_status add_rows(const struct work *w, const double *share, struct dea_text *out)
+static dea_status add_rows(struct work *w, const double *share, struct dea_text *out)
 {
   const struct dea_emulator *e = &w->emulator;
-  double values[DEA_EXPLORE_QUANTITIES_MAX], errors[DEA_EXPLORE_QUANTITIES_MAX];
+  const size_t numbers = e->voltage_count * e->quantity_count;
+  double *values = dea_arena_alloc(&w->memory, numbers, sizeof *values),
+         *errors = dea_arena_alloc(&w->memory, numbers, sizeof *errors);
+  unsigned *flags = dea_arena_alloc(&w->memory, e->voltage_count, sizeof *flags);
   char words[DEA_FLAGS_SIZE];
+  DEA_TRY(w->case_key->ctx, dea_arena_status(&w->memory));
+  DEA_TRY(w->case_key->ctx, dea_emulator_at(w->case_key->ctx, e, share, e->voltages_V,
+                                            e->voltage_count, values, errors, flags));
   dea_text_add(out, "voltage_V (V)");
   for (size_t q = 0; q < e->quantity_count; q++) {
     const struct dea_column *of = e->quantities[q];
@@ -116,14 +122,11 @@ static dea_status add_rows(const struct work *w, const double *share, struct dea
   }
   dea_text_add(out, ",flags\n");
   for (size_t k = 0; k < e->voltage_count; k++) {
-    unsigned flags;
-    DEA_TRY(w->case_key->ctx,
-            dea_emulator_at(w->case_key->ctx, e, share, e->voltages_V[k], values, errors, &flags));
     dea_text_add(out, "%.12g", e->voltages_V[k]);
-    for (size_t q = 0; q < e->quantity_count; q++) {
-      dea_text_add(out, isnan(values[q]) ? ",," : ",%.15g,%.3g", values[q], errors[q]);
+    for (size_t i = k * e->quantity_count; i < (k + 1) * e->quantity_count; i++) {
+      dea_text_add(out, isnan(values[i]) ? ",," : ",%.15g,%.3g", values[i], errors[i]);
     }
-    dea_text_add(out, ",%s\n", dea_flags_text(flags, words));
+    dea_text_add(out, ",%s\n", dea_flags_text(flags[k], words));
   }
   return DEA_OK;
 }

@@ -274,31 +274,45 @@ static double error_at(const struct dea_emulator *e, const double *w, size_t k, 
   return sum;
 }
 
-dea_status dea_emulator_at(struct dea_context *ctx, const struct dea_emulator *e,
-                           const double *share, double voltage_V, double *values, double *errors,
-                           unsigned *flags)
+static void values_at(const struct dea_emulator *e, const double *w, bool within, double voltage_V,
+                      double *scratch, double *values, double *errors, size_t beside[2])
 {
-  double *w = dea_alloc(ctx, e->case_count + 2 * e->voltage_count, sizeof *w);
-  DEA_TRY_MEMORY(w != NULL);
-  double *x = w + e->case_count, *b = x + e->voltage_count;
   size_t high = 0;
   while (high + 1 < e->voltage_count && e->voltages_V[high] < voltage_V) {
     high++;
   }
-  const size_t low = e->voltages_V[high] > voltage_V && high > 0 ? high - 1 : high;
+  beside[0] = e->voltages_V[high] > voltage_V && high > 0 ? high - 1 : high;
+  beside[1] = high;
+  for (size_t q = 0; q < e->quantity_count; q++) {
+    const bool there = within && e->end[q] > e->first[q] &&
+                       voltage_V >= e->voltages_V[e->first[q]] &&
+                       voltage_V <= e->voltages_V[e->end[q] - 1];
+    values[q] =
+        there ? interpolate(e, w, q, 1, voltage_V, scratch, scratch + e->voltage_count) : NAN;
+    errors[q] = there ? fmax(error_at(e, w, beside[0], q), error_at(e, w, high, q)) : NAN;
+  }
+}
+
+dea_status dea_emulator_at(struct dea_context *ctx, const struct dea_emulator *e,
+                           const double *share, const double *voltages_V, size_t count,
+                           double *values, double *errors, unsigned *flags)
+{
+  double *w = dea_alloc(ctx, 2 * (e->case_count + e->voltage_count), sizeof *w);
+  if (w == NULL) {
+    return DEA_E_MEMORY;
+  }
+  double *away = w + e->case_count, *scratch = away + e->case_count;
   bool within = true;
   for (size_t j = 0; j < e->key_count; j++) {
     within = within && share[j] >= 0 && share[j] <= 1;
   }
   case_weights(e, share, e->level, w);
-  for (size_t q = 0; q < e->quantity_count; q++) {
-    const bool there = within && e->end[q] > e->first[q] &&
-                       voltage_V >= e->voltages_V[e->first[q]] &&
-                       voltage_V <= e->voltages_V[e->end[q] - 1];
-    values[q] = there ? interpolate(e, w, q, 1, voltage_V, x, b) : NAN;
-    errors[q] = there ? fmax(error_at(e, w, low, q), error_at(e, w, high, q)) : NAN;
+  for (size_t k = 0; k < count; k++) {
+    const size_t first = k * e->quantity_count;
+    size_t beside[2];
+    values_at(e, w, within, voltages_V[k], scratch, values + first, errors + first, beside);
+    flags[k] = flags_at(e, share, beside[0], beside[1], away);
   }
-  *flags = flags_at(e, share, low, high, w);
   dea_free(ctx, w);
   return DEA_OK;
 }

@@ -40,12 +40,13 @@ struct dea_emulator {
  * and every second voltage say. Of a quantity with fewer than two voltages first = end. */
 dea_status dea_emulator_make(struct dea_context *ctx, struct dea_emulator *io);
 void dea_emulator_free(struct dea_context *ctx, struct dea_emulator *emulator);
-/* At shares of the keys' ranges and a voltage: values and errors [quantities], sums of those of
- * cases by their weights, at the worse of the voltages beside; NAN where there are none; *flags:
- * those of the designs no more than twice as far as the nearest, at the voltages beside. */
+/* At shares of the keys' ranges and voltages [count]: values and errors [count][quantities], sums
+ * of those of cases by their weights, at the worse of the voltages beside; NAN where there are
+ * none; flags [count]: of the designs no more than twice as far as the nearest, at the voltages
+ * beside. */
 dea_status dea_emulator_at(struct dea_context *ctx, const struct dea_emulator *emulator,
-                           const double *share, double voltage_V, double *values, double *errors,
-                           unsigned *flags);
+                           const double *share, const double *voltages_V, size_t count,
+                           double *values, double *errors, unsigned *flags);
 /* Hash of a design without its computations: which emulator is of which run. */
 dea_status dea_emulator_device(struct dea_context *ctx, const struct dea_design *design,
                                const struct dea_device *device, char out[65]);

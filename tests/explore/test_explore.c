@@ -451,14 +451,14 @@ TEST(test_sparse_grid)
   emulate(2, 2, polynomial, &of);
   for (int i = 0; i < 50; i++) {
     const double share[2] = {i / 49.0, 0.5 + 0.5 * sin(i)}, V = 80 * i;
-    assert_int_equal(dea_emulator_at(ctx, &of.e, share, V, &value, &error, &flags), DEA_OK);
+    assert_int_equal(dea_emulator_at(ctx, &of.e, share, &V, 1, &value, &error, &flags), DEA_OK);
     assert_close(value, polynomial(share, V), 0, 1e-12);
   }
   dea_emulator_free(ctx, &of.e);
   emulate(3, 3, smooth, &of); // the error that is stored bounds the true one
   for (int i = 0; i < 500; i++) {
     const double share[3] = {i % 7 / 6.0, i % 11 / 10.0, i % 13 / 12.0}, V = 7.9 * i;
-    assert_int_equal(dea_emulator_at(ctx, &of.e, share, V, &value, &error, &flags), DEA_OK);
+    assert_int_equal(dea_emulator_at(ctx, &of.e, share, &V, 1, &value, &error, &flags), DEA_OK);
     const double off = fabs(value - smooth(share, V));
     assert_true(off <= error);
     worst = fmax(worst, off);
@@ -498,14 +498,16 @@ TEST(test_emulator_refuses)
                {0.01, 1600, true, 1}, {0.1464466, 2000, true, 0}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     assert_int_equal(
-        dea_emulator_at(ctx, &of.e, &cases[i].share, cases[i].V, &value, &error, &flags), DEA_OK);
+        dea_emulator_at(ctx, &of.e, &cases[i].share, &cases[i].V, 1, &value, &error, &flags),
+        DEA_OK);
     assert_int_equal(isfinite(value), cases[i].there);
     assert_int_equal(isfinite(error), cases[i].there);
     assert_int_equal(flags, cases[i].flags);
   }
   dea_emulator_free(ctx, &of.e);
   emulate(0, 1, smooth_of_voltage, &of); // points of one design
-  assert_int_equal(dea_emulator_at(ctx, &of.e, NULL, 1234, &value, &error, &flags), DEA_OK);
+  assert_int_equal(dea_emulator_at(ctx, &of.e, NULL, &(double){1234}, 1, &value, &error, &flags),
+                   DEA_OK);
   assert_true(fabs(value - smooth_of_voltage(NULL, 1234)) <= error && error < 1e-2);
   dea_emulator_free(ctx, &of.e);
 }
