@@ -17,42 +17,61 @@ static int cell_of(const struct dea_reduced_spline *s, int k, double x, double *
   return i;
 }
 
-/* Value, slope and second slope of a polynomial, c[i * stride]. */
-static void horner(const double *c, int stride, double x, double out[3])
+/* Value, slope and second slope of a polynomial. */
+static void horner(const double c[DEA_REDUCED_TERMS], double x, double out[3])
 {
   double f = 0, d = 0, dd = 0;
   for (int i = DEA_REDUCED_TERMS - 1; i >= 0; i--) {
     dd = dd * x + d;
     d = d * x + f;
-    f = f * x + c[i * stride];
+    f = f * x + c[i];
   }
   out[0] = f;
   out[1] = d;
   out[2] = 2 * dd;
 }
 
+/* A spline along x in one of its cells at one y: value and slopes by y as polynomials. */
+struct line {
+  double at[3][DEA_REDUCED_TERMS];
+};
+
+static void line_at(const struct dea_reduced_spline *spline, int i, int j, double t, double width,
+                    struct line *out)
+{
+  const double *c = spline->c + (i * spline->cells[1] + j) * DEA_REDUCED_TERMS * DEA_REDUCED_TERMS;
+  for (int k = 0; k < DEA_REDUCED_TERMS; k++) {
+    double by[3];
+    horner(c + k * DEA_REDUCED_TERMS, t, by);
+    out->at[0][k] = by[0];
+    out->at[1][k] = by[1] / width;
+    out->at[2][k] = by[2] / (width * width);
+  }
+}
+
+static void point_of_line(const struct line *line, double s, double width, double out[6])
+{
+  double by[3][3];
+  for (int d = 0; d < 3; d++) {
+    horner(line->at[d], s, by[d]);
+  }
+  out[0] = by[0][0];
+  out[1] = by[0][1] / width;
+  out[2] = by[1][0];
+  out[3] = by[0][2] / (width * width);
+  out[4] = by[1][1] / width;
+  out[5] = by[2][0];
+}
+
 void dea_reduced_spline_at(const struct dea_reduced_spline *spline, double x, double y,
                            double out[6])
 {
-  double at[2], width[2], row[3 * DEA_REDUCED_TERMS], by[3];
+  double at[2], width[2];
+  struct line line;
   const int i = cell_of(spline, 0, x, &at[0], &width[0]),
             j = cell_of(spline, 1, y, &at[1], &width[1]);
-  const double *c = spline->c + (i * spline->cells[1] + j) * DEA_REDUCED_TERMS * DEA_REDUCED_TERMS;
-  for (int k = 0; k < DEA_REDUCED_TERMS; k++) {
-    horner(c + k * DEA_REDUCED_TERMS, 1, at[1], by);
-    for (int d = 0; d < 3; d++) {
-      row[d * DEA_REDUCED_TERMS + k] = by[d];
-    }
-  }
-  horner(row, 1, at[0], by);
-  out[0] = by[0];
-  out[1] = by[1] / width[0];
-  out[3] = by[2] / (width[0] * width[0]);
-  horner(row + DEA_REDUCED_TERMS, 1, at[0], by);
-  out[2] = by[0] / width[1];
-  out[4] = by[1] / (width[0] * width[1]);
-  horner(row + 2 * DEA_REDUCED_TERMS, 1, at[0], by);
-  out[5] = by[0] / (width[1] * width[1]);
+  line_at(spline, i, j, at[1], width[1], &line);
+  point_of_line(&line, at[0], width[0], out);
 }
 
 static int is_outside(const struct dea_reduced_spline *s, int k, double x)
@@ -61,19 +80,41 @@ static int is_outside(const struct dea_reduced_spline *s, int k, double x)
   return !(x >= low - beyond * (high - low) && x <= high + beyond * (high - low));
 }
 
-int dea_reduced_at(const struct dea_reduced *model, double force, double voltage_V,
-                   struct dea_reduced_point *out)
+/* The energy at a voltage, for many forces. */
+struct section {
+  const struct dea_reduced *model;
+  double voltage_V, t, width;
+  int i, j; // i: cell of the line; -1: none yet
+  struct line line;
+};
+
+static int section_begin(const struct dea_reduced *model, double voltage_V, struct section *out)
 {
-  const double V = voltage_V, y = model->even ? V * V : V;
-  const double y_V = model->even ? 2 * V : 1, y_VV = model->even ? 2 : 0;
-  double f[6];
+  const double y = model->even ? voltage_V * voltage_V : voltage_V;
   if (is_outside(&model->energy, 1, y)) {
     return DEA_REDUCED_BEYOND_VOLTAGE;
   }
+  out->model = model;
+  out->voltage_V = voltage_V;
+  out->i = -1;
+  out->j = cell_of(&model->energy, 1, y, &out->t, &out->width);
+  return DEA_REDUCED_OK;
+}
+
+static int section_at(struct section *of, double force, struct dea_reduced_point *out)
+{
+  const struct dea_reduced *model = of->model;
+  const double V = of->voltage_V, y_V = model->even ? 2 * V : 1, y_VV = model->even ? 2 : 0;
+  double f[6], s, width;
   if (is_outside(&model->energy, 0, force)) {
     return DEA_REDUCED_BEYOND_FORCE;
   }
-  dea_reduced_spline_at(&model->energy, force, y, f);
+  const int i = cell_of(&model->energy, 0, force, &s, &width);
+  if (i != of->i) {
+    line_at(&model->energy, i, of->j, of->t, of->width, &of->line);
+    of->i = i;
+  }
+  point_of_line(&of->line, s, width, f);
   out->force = force;
   out->voltage_V = V;
   out->q = -f[1];
@@ -83,6 +124,14 @@ int dea_reduced_at(const struct dea_reduced *model, double force, double voltage
   out->by_voltage = -f[4] * y_V;
   out->charge_by_voltage = -f[5] * y_V * y_V - f[2] * y_VV;
   return DEA_REDUCED_OK;
+}
+
+int dea_reduced_at(const struct dea_reduced *model, double force, double voltage_V,
+                   struct dea_reduced_point *out)
+{
+  struct section section;
+  const int end = section_begin(model, voltage_V, &section);
+  return end != DEA_REDUCED_OK ? end : section_at(&section, force, out);
 }
 
 /* The next force of Newton's method, which stays in the range; a second time at its end: 0. */
@@ -100,12 +149,12 @@ static int is_settled(const struct dea_reduced *model, double step)
   return fabs(step) <= settled * (s->breaks[0][s->cells[0]] - s->breaks[0][0]);
 }
 
-int dea_reduced_held(const struct dea_reduced *model, double q, double voltage_V,
-                     struct dea_reduced_point *out)
+static int hold(struct section *section, double q, struct dea_reduced_point *out)
 {
+  const struct dea_reduced *model = section->model;
   double force = out->force;
   for (int i = 0; i < TRIALS; i++) {
-    const int end = dea_reduced_at(model, force, voltage_V, out);
+    const int end = section_at(section, force, out);
     const double step = (out->q - q) / out->by_force;
     if (end != DEA_REDUCED_OK) {
       return end;
@@ -118,6 +167,14 @@ int dea_reduced_held(const struct dea_reduced *model, double q, double voltage_V
     }
   }
   return DEA_REDUCED_NOT_CONVERGED;
+}
+
+int dea_reduced_held(const struct dea_reduced *model, double q, double voltage_V,
+                     struct dea_reduced_point *out)
+{
+  struct section section;
+  const int end = section_begin(model, voltage_V, &section);
+  return end != DEA_REDUCED_OK ? end : hold(&section, q, out);
 }
 
 static double polynomial(const double c[3], double x)
@@ -235,10 +292,13 @@ int dea_reduced_begin(const struct dea_reduced *model, double voltage_V, double 
 /* A step of a copy: p = known + share e at its end, and the state before. */
 struct step {
   const struct dea_reduced *model;
+  struct section section; // at the voltage of its end
   const struct dea_reduced_copy *from;
   const double *mass; // of the copy, or NULL
   double h, external[2];
-  double known[DEA_REDUCED_BRANCHES], share[DEA_REDUCED_BRANCHES];
+  double decay[DEA_REDUCED_BRANCHES], share[DEA_REDUCED_BRANCHES]; // exp(-h/tau)
+  double known[DEA_REDUCED_BRANCHES];
+  double was; // what the begin of the step adds to the residual
   double a_m, a_f, beta, gamma;
 };
 
@@ -255,9 +315,10 @@ static double residual(const struct step *s, struct dea_reduced_copy *to, double
 {
   const struct dea_reduced_copy *n = s->from;
   const double h = s->h, c = s->model->damping, q = to->at.q;
-  double unused, by_q;
+  double by_q, inertia_q;
+  const double e = strain(s->model, q);
   for (int i = 0; i < s->model->branch_count; i++) {
-    to->p[i] = s->known[i] + s->share[i] * strain(s->model, q);
+    to->p[i] = s->known[i] + s->share[i] * e;
   }
   if (s->mass == NULL) {
     to->rate = h > 0 ? (q - n->at.q) / h : 0;
@@ -268,21 +329,24 @@ static double residual(const struct step *s, struct dea_reduced_copy *to, double
   const double a_q = 1 / (s->beta * h * h), v_q = s->gamma / (s->beta * h);
   to->acceleration = (q - n->at.q - h * n->rate) * a_q - (0.5 / s->beta - 1) * n->acceleration;
   to->rate = n->rate + h * ((1 - s->gamma) * n->acceleration + s->gamma * to->acceleration);
-  const double was =
-      inertia_at(s->model, s->mass, n->at.q, n->rate, n->acceleration, 0, 0, &unused) * s->a_m +
-      imbalance(s, n, s->external[0], &unused) * s->a_f;
   const double now =
-      inertia_at(s->model, s->mass, q, to->rate, to->acceleration, a_q, v_q, &unused);
+      inertia_at(s->model, s->mass, q, to->rate, to->acceleration, a_q, v_q, &inertia_q);
   const double r = imbalance(s, to, s->external[1], &by_q);
-  *slope = (1 - s->a_m) * unused + (1 - s->a_f) * (1 / to->at.by_force + by_q + c * v_q);
-  return was + (1 - s->a_m) * now + (1 - s->a_f) * r;
+  *slope = (1 - s->a_m) * inertia_q + (1 - s->a_f) * (1 / to->at.by_force + by_q + c * v_q);
+  return s->was + (1 - s->a_m) * now + (1 - s->a_f) * r;
 }
 
-static int solve(const struct step *s, double voltage_V, struct dea_reduced_copy *to)
+static int solve(struct step *s, struct dea_reduced_copy *to)
 {
-  double force = s->from->at.force, slope;
+  const struct dea_reduced_copy *n = s->from;
+  double force = n->at.force, slope;
+  if (s->mass != NULL) {
+    s->was =
+        s->a_m * inertia_at(s->model, s->mass, n->at.q, n->rate, n->acceleration, 0, 0, &slope) +
+        s->a_f * imbalance(s, n, s->external[0], &slope);
+  }
   for (int i = 0; i < TRIALS; i++) {
-    const int end = dea_reduced_at(s->model, force, voltage_V, &to->at);
+    const int end = section_at(&s->section, force, &to->at);
     if (end != DEA_REDUCED_OK) {
       return end;
     }
@@ -298,10 +362,10 @@ static int solve(const struct step *s, double voltage_V, struct dea_reduced_copy
 }
 
 /* The place stays, and the acceleration follows the forces. */
-static int jump(const struct step *s, double voltage_V, struct dea_reduced_copy *to)
+static int jump(struct step *s, struct dea_reduced_copy *to)
 {
   double slope;
-  const int end = dea_reduced_held(s->model, s->from->at.q, voltage_V, &to->at);
+  const int end = hold(&s->section, s->from->at.q, &to->at);
   const double x = to->at.q - s->model->middle, m = polynomial(s->mass, x);
   const double d = s->mass[1] + 2 * s->mass[2] * x;
   to->acceleration = -(imbalance(s, to, s->external[1], &slope) + d * to->rate * to->rate / 2) / m;
@@ -315,7 +379,7 @@ static double loss(const struct step *s, const struct dea_reduced_copy *to)
   const double v = 0.5 * (s->from->rate + to->rate);
   double sum = s->model->damping * v * v * h;
   for (int i = 0; i < s->model->branch_count; i++) {
-    const double tau = s->model->branch_s[i], x = exp(-h / tau), A = (e[1] - e[0]) / h * tau;
+    const double tau = s->model->branch_s[i], x = s->decay[i], A = (e[1] - e[0]) / h * tau;
     const double B = e[0] - s->from->p[i] - A;
     sum += s->model->branch_N_per_m[i] *
            (A * A * h / tau + 2 * A * B * (1 - x) + B * B * (1 - x * x) / 2);
@@ -324,17 +388,14 @@ static double loss(const struct step *s, const struct dea_reduced_copy *to)
 }
 
 /* s: all but what is of the copy. */
-static int step_copy(struct step *s, double voltage_V, struct dea_reduced_copy *to)
+static int step_copy(struct step *s, struct dea_reduced_copy *to)
 {
   const double h = s->h, e = strain(s->model, s->from->at.q);
   for (int i = 0; i < s->model->branch_count; i++) {
-    const double y = h / s->model->branch_s[i], x = exp(-y);
-    const double mean = y > 1e-8 ? (1 - x) / y : 1 - y / 2;
-    s->share[i] = 1 - mean;
-    s->known[i] = x * s->from->p[i] + (mean - x) * e;
+    s->known[i] = s->decay[i] * s->from->p[i] + (1 - s->share[i] - s->decay[i]) * e;
   }
   *to = *s->from;
-  const int end = s->mass != NULL && !(h > 0) ? jump(s, voltage_V, to) : solve(s, voltage_V, to);
+  const int end = s->mass != NULL && !(h > 0) ? jump(s, to) : solve(s, to);
   if (end == DEA_REDUCED_OK && h > 0) {
     to->loss_J += loss(s, to);
   }
@@ -348,6 +409,15 @@ int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_s
   const struct dea_reduced_state n = *from;
   struct step s = {.model = model, .h = length_s};
   const int loaded = n.external != 0 || external != 0;
+  int end = section_begin(model, voltage_V, &s.section);
+  if (end != DEA_REDUCED_OK) {
+    return end;
+  }
+  for (int i = 0; i < model->branch_count; i++) {
+    const double y = length_s / model->branch_s[i];
+    s.decay[i] = exp(-y);
+    s.share[i] = y > 1e-8 ? 1 - (1 - s.decay[i]) / y : y / 2;
+  }
   s.a_m = (2 * rho - 1) / (rho + 1);
   s.a_f = rho / (rho + 1);
   s.beta = (1 - s.a_m + s.a_f) * (1 - s.a_m + s.a_f) / 4;
@@ -362,7 +432,7 @@ int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_s
     s.mass = inertia && k % 2 == 1 ? model->modes[k / 2].mass : NULL;
     s.external[0] = force_on(model, k, n.external);
     s.external[1] = force_on(model, k, external);
-    const int end = step_copy(&s, voltage_V, &to->copy[k]);
+    end = step_copy(&s, &to->copy[k]);
     if (end != DEA_REDUCED_OK) {
       return end;
     }
