@@ -51,16 +51,21 @@ static void line_at(const struct dea_reduced_spline *spline, int i, int j, doubl
 
 static void point_of_line(const struct line *line, double s, double width, double out[6])
 {
-  double by[3][3];
-  for (int d = 0; d < 3; d++) {
-    horner(line->at[d], s, by[d]);
+  double f = 0, f_s = 0, f_ss = 0, g = 0, g_s = 0, h = 0; // g, h: slopes by y
+  for (int i = DEA_REDUCED_TERMS - 1; i >= 0; i--) {
+    f_ss = f_ss * s + f_s;
+    f_s = f_s * s + f;
+    f = f * s + line->at[0][i];
+    g_s = g_s * s + g;
+    g = g * s + line->at[1][i];
+    h = h * s + line->at[2][i];
   }
-  out[0] = by[0][0];
-  out[1] = by[0][1] / width;
-  out[2] = by[1][0];
-  out[3] = by[0][2] / (width * width);
-  out[4] = by[1][1] / width;
-  out[5] = by[2][0];
+  out[0] = f;
+  out[1] = f_s / width;
+  out[2] = g;
+  out[3] = 2 * f_ss / (width * width);
+  out[4] = g_s / width;
+  out[5] = h;
 }
 
 void dea_reduced_spline_at(const struct dea_reduced_spline *spline, double x, double y,

@@ -11,7 +11,7 @@
  * Functions return 0, or why they cannot: enum dea_reduced_end. Nothing allocates. */
 #pragma once
 
-enum { DEA_REDUCED_TERMS = 6, DEA_REDUCED_BRANCHES = 12, DEA_REDUCED_MODES = 3 };
+enum { DEA_REDUCED_TERMS = 6, DEA_REDUCED_BRANCHES = 12, DEA_REDUCED_MODES = 6 };
 
 enum dea_reduced_end {
   DEA_REDUCED_OK,

@@ -364,11 +364,12 @@ static dea_status fit_mode(struct making *m, size_t k, const struct dea_reduced_
 }
 
 /* The modes with the largest shares of dq/dV; first those that have some of dq/dF too, without
- * which a mode moves much beside the coordinate and counts in small motions alone. */
+ * which the charge of a mode at large motions is not of the coordinate: it counts in small motions
+ * alone. */
 static dea_status fit_modes(struct making *m, const struct dea_reduced_sample *free,
                             const double *x, struct dea_reduced_order *out)
 {
-  static const double least = 0.01;
+  static const double least = 0.01, least_by_force = 1e-4;
   struct dea_reduced *core = &out->core;
   double size[DEA_REDUCED_MODES];
   out->mode_share = m->massive ? 0 : NAN;
@@ -379,7 +380,7 @@ static dea_status fit_modes(struct making *m, const struct dea_reduced_sample *f
     if (own < least) {
       continue;
     }
-    own += mode.share >= least ? 1e3 : 0;
+    own += mode.share >= least_by_force ? 1e3 : 0;
     int n = core->small_count;
     for (; n > 0 && size[n - 1] < own; n--) {
       if (n < DEA_REDUCED_MODES) {
@@ -394,7 +395,7 @@ static dea_status fit_modes(struct making *m, const struct dea_reduced_sample *f
     }
   }
   for (int i = 0; i < core->small_count; i++) {
-    core->mode_count += core->modes[i].share >= least ? 1 : 0;
+    core->mode_count += core->modes[i].share >= least_by_force ? 1 : 0;
     out->mode_share += core->modes[i].share;
   }
   return m->massive && core->mode_count == 0
