@@ -175,6 +175,57 @@ static void check_energy(const struct dea_reduced_order *order)
   assert_true(worst_J < 1e-6 * largest && s.loss_J > 0.01 * largest);
 }
 
+/* The drive, by a file: a jump to V or a slow rise. What the coordinate may be off by then, over
+ * the stroke. */
+static dea_status drive(struct dea_reduced_order *order, const struct dea_device *device,
+                        double share_off, double V, int steps, double *off)
+{
+  const struct dea_model_type *type = dea_model_find("reduced");
+  const struct dea_time_options fast = {.circuit = {0, INFINITY}, .rho_inf = 0.8, .inertia = true};
+  struct dea_model_settings from_file = settings;
+  struct dea_model *model;
+  struct dea_load_point at;
+  dea_status status = DEA_OK;
+  double error;
+  const double was = order->share_off[0];
+  order->share_off[0] = share_off;
+  from_file.reduced.file = "reduced_drive.json";
+  assert_int_equal(dea_reduced_order_write(ctx, order, device, from_file.reduced.file), DEA_OK);
+  order->share_off[0] = was;
+  assert_int_equal(type->create(ctx, device, &from_file, &model), DEA_OK);
+  assert_int_equal(type->solve(ctx, model, 0, &at), DEA_OK);
+  assert_int_equal(type->begin(ctx, model, &fast, &at), DEA_OK);
+  for (int k = 1; k <= steps && status == DEA_OK; k++) {
+    const struct dea_time_step step = {.length_s = steps > 1 ? 0.02 : 0,
+                                       .source_voltage_V = V * k / steps};
+    status = type->advance(ctx, model, &step, &at, &error);
+    type->accept(model);
+  }
+  assert_int_equal(type->errors(ctx, model, off), DEA_OK);
+  *off = *off / fabs(order->stroke) - order->error;
+  type->destroy(ctx, model);
+  assert_int_equal(remove(from_file.reduced.file), 0);
+  return status;
+}
+
+/* A mode whose share is not sure is off by that much of how far it is from its rest: at once by the
+ * whole of a jump, which is refused where that is much; hardly where the voltage rises slowly. */
+static void check_drive(struct dea_reduced_order *order, const struct dea_device *device)
+{
+  struct dea_reduced_point rest[2];
+  double off;
+  dea_reduced_at(&order->core, 0, 0, &rest[0]);
+  dea_reduced_at(&order->core, 0, 3e3, &rest[1]);
+  assert_int_equal(drive(order, device, 0.04, 3e3, 1, &off), DEA_OK);
+  // branches take a fiftieth of the jump
+  assert_close(off, 0.04 * fabs((rest[1].q - rest[0].q) / order->stroke), 5e-2, 0);
+  assert_int_equal(drive(order, device, 0.06, 4e3, 1, &off), DEA_E_DOMAIN);
+  assert_non_null(strstr(dea_context_message(ctx), "faster"));
+  dea_context_clear(ctx);
+  assert_int_equal(drive(order, device, 0.06, 4e3, 200, &off), DEA_OK);
+  assert_true(off < 1e-3);
+}
+
 TEST(test_cone)
 {
   static const double creep[][2] = {{0, 3.5e3},  {0.1, 3.5e3}, {0.4, 3.5e3}, {2, 3.5e3},
@@ -190,6 +241,7 @@ TEST(test_cone)
   check_source(order, device);
   check_reciprocity(order);
   check_energy(order);
+  check_drive(order, device);
   const double stroke_m = fabs(order->stroke);
   struct dea_model_settings from_file = settings;
   from_file.reduced.file = "reduced_cone.json";

@@ -25,6 +25,9 @@ struct dea_reduced_order {
   double error, charge_error;    // largest of samples that were left out of a fit of the others,
                                  // over stroke and largest charge
   double mode_share;             // smallest part of dq/dF that the modes have; NAN
+  // How far the part of dq/dV of each mode in time is off at the worst voltage, and at
+  // [mode_count] what all of them lack of 1; the lowest frequency that has of it.
+  double share_off[DEA_REDUCED_MODES + 1], left_Hz;
   struct dea_reduced_output *outputs;
   size_t output_count;
   char device[65]; // hash of the design that it is of

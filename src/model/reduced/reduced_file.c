@@ -114,6 +114,9 @@ static json_t *order_json(const struct dea_reduced_order *o, const struct dea_de
   }
   json_object_set_new(root, "modes", modes);
   dea_json_put_count(root, "modes_in_time", (size_t)core->mode_count);
+  json_object_set_new(root, "voltage_share_off",
+                      numbers(o->share_off, (size_t)core->mode_count + 1));
+  dea_json_put(root, "left_Hz", o->left_Hz);
   json_object_set_new(root, "strain", numbers(core->strain, 3));
   dea_json_put(root, "damping", core->damping);
   json_object_set_new(root, "branch_N_per_m",
@@ -265,6 +268,10 @@ static void read_order(struct reading *r, const json_t *root, struct dea_reduced
     numbers_into(r, mode, "voltage_share_by_q", 3, core->modes[i].by_q);
     core->modes[i].share = number(r, mode, "share");
     core->modes[i].voltage_share = number(r, mode, "voltage_share");
+  }
+  if (json_object_get(root, "voltage_share_off") != NULL && !r->wrong) {
+    numbers_into(r, root, "voltage_share_off", (size_t)core->mode_count + 1, o->share_off);
+    o->left_Hz = number(r, root, "left_Hz");
   }
   numbers_into(r, root, "strain", 3, core->strain);
   core->damping = number(r, root, "damping");

@@ -336,71 +336,87 @@ static dea_status fit_outputs(struct making *m, struct dea_reduced_order *out)
   return DEA_OK;
 }
 
-/* A mode of the states without a force: m = 1/(dq/dF omega^2) by x, and its shares. *size: of that
- * of dq/dV. */
+/* A mode that is found, with the size of its share of dq/dV and how far that is off its mean at the
+ * worst voltage. */
+struct candidate {
+  struct dea_reduced_mode mode;
+  double size, off, Hz;
+};
+
+/* Of the states without a force: m = 1/(dq/dF omega^2) by x, and its shares. */
 static dea_status fit_mode(struct making *m, size_t k, const struct dea_reduced_sample *free,
-                           const double *x, struct dea_reduced_mode *out, double *size)
+                           const double *x, struct candidate *out)
 {
   double mass[DEA_REDUCED_VOLTAGES_MAX], share[DEA_REDUCED_VOLTAGES_MAX];
   const size_t count = m->grid.voltages, from = m->grid.even ? 1 : 0; // no dq/dV at 0 V
-  *out = (struct dea_reduced_mode){.share = 0};
+  struct dea_reduced_mode *mode = &out->mode;
+  *out = (struct candidate){.Hz = free[0].at.modes[k].frequency_Hz};
   for (size_t i = 0; i < count; i++) {
-    const struct dea_compliance_mode *mode = &free[i].at.modes[k];
-    const double omega = 2 * acos(-1.0) * mode->frequency_Hz;
+    const struct dea_compliance_mode *at = &free[i].at.modes[k];
+    const double omega = 2 * acos(-1.0) * at->frequency_Hz;
     mass[i] = 1 / (free[i].at.by_force * omega * omega);
-    share[i] = mode->voltage_share;
+    share[i] = at->voltage_share;
     if (i >= from) {
-      out->share += mode->share / (double)(count - from);
-      out->voltage_share += mode->voltage_share / (double)(count - from);
+      mode->share += at->share / (double)(count - from);
+      mode->voltage_share += at->voltage_share / (double)(count - from);
     }
   }
-  *size = isfinite(mass[0]) && isfinite(out->share) ? fabs(out->voltage_share) : 0;
-  if (*size > 0) {
-    DEA_TRY(m->ctx, dea_reduced_fit_polynomial(m->ctx, x, mass, count, out->mass));
+  for (size_t i = from; i < count; i++) {
+    out->off = fmax(out->off, fabs(share[i] - mode->voltage_share));
+  }
+  out->size = isfinite(mass[0]) && isfinite(mode->share) ? fabs(mode->voltage_share) : 0;
+  if (out->size > 0) {
+    DEA_TRY(m->ctx, dea_reduced_fit_polynomial(m->ctx, x, mass, count, mode->mass));
     DEA_TRY(m->ctx,
-            dea_reduced_fit_polynomial(m->ctx, x + from, share + from, count - from, out->by_q));
+            dea_reduced_fit_polynomial(m->ctx, x + from, share + from, count - from, mode->by_q));
   }
   return DEA_OK;
 }
 
 /* The modes with the largest shares of dq/dV; first those that have some of dq/dF too, without
- * which the charge of a mode at large motions is not of the coordinate: it counts in small motions
- * alone. */
+ * which a mode moves much beside the coordinate and counts in small motions alone. What others
+ * have moves at once. */
 static dea_status fit_modes(struct making *m, const struct dea_reduced_sample *free,
                             const double *x, struct dea_reduced_order *out)
 {
   static const double least = 0.01, least_by_force = 1e-4;
   struct dea_reduced *core = &out->core;
-  double size[DEA_REDUCED_MODES];
+  struct candidate of[DEA_COMPLIANCE_MODES];
   out->mode_share = m->massive ? 0 : NAN;
   for (size_t k = 0; k < DEA_COMPLIANCE_MODES && m->massive; k++) {
-    struct dea_reduced_mode mode;
-    double own;
-    DEA_TRY(m->ctx, fit_mode(m, k, free, x, &mode, &own));
-    if (own < least) {
-      continue;
+    DEA_TRY(m->ctx, fit_mode(m, k, free, x, &of[k]));
+    of[k].size += of[k].size >= least && of[k].mode.share >= least_by_force ? 1 : 0;
+  }
+  double left = 1;
+  while (m->massive && core->small_count < DEA_REDUCED_MODES) {
+    size_t best = 0;
+    for (size_t k = 1; k < DEA_COMPLIANCE_MODES; k++) {
+      best = of[k].size > of[best].size ? k : best;
     }
-    own += mode.share >= least_by_force ? 1e3 : 0;
-    int n = core->small_count;
-    for (; n > 0 && size[n - 1] < own; n--) {
-      if (n < DEA_REDUCED_MODES) {
-        core->modes[n] = core->modes[n - 1];
-        size[n] = size[n - 1];
-      }
+    if (of[best].size < least) {
+      break;
     }
-    if (n < DEA_REDUCED_MODES) {
-      core->modes[n] = mode;
-      size[n] = own;
-      core->small_count += core->small_count < DEA_REDUCED_MODES ? 1 : 0;
+    const struct dea_reduced_mode *mode = &core->modes[core->small_count];
+    core->modes[core->small_count] = of[best].mode;
+    if (of[best].size >= 1) {
+      out->share_off[core->mode_count++] = of[best].off;
+      left -= mode->voltage_share;
+      of[best].Hz = NAN;
+    }
+    out->mode_share += mode->share;
+    core->small_count++;
+    of[best].size = 0;
+  }
+  if (m->massive && core->mode_count == 0) {
+    return dea_fail(m->ctx, DEA_E_DOMAIN, "no mode of the device moves the coordinate");
+  }
+  out->share_off[core->mode_count] = left;
+  for (size_t k = DEA_COMPLIANCE_MODES; k-- > 0 && m->massive;) {
+    if (isfinite(of[k].Hz) && (fabs(of[k].mode.voltage_share) >= least || !(out->left_Hz > 0))) {
+      out->left_Hz = of[k].Hz;
     }
   }
-  for (int i = 0; i < core->small_count; i++) {
-    core->mode_count += core->modes[i].share >= least_by_force ? 1 : 0;
-    out->mode_share += core->modes[i].share;
-  }
-  return m->massive && core->mode_count == 0
-             ? dea_fail(m->ctx, DEA_E_DOMAIN, "no mode of the device moves the coordinate")
-             : DEA_OK;
+  return DEA_OK;
 }
 
 /* Times of the branches of all plies, with shares by modulus and thickness. */

@@ -8,10 +8,16 @@
 #include <stdio.h>
 #include <string.h>
 
+/* In time, of the stroke: what is wanted, and from where on the model refuses. */
+static const double follows = 0.03, beyond = 0.05;
+
 /* A moment of a history: the film, and the circuit that it hangs on. */
 struct moment {
   struct dea_reduced_state film;
   struct dea_circuit_state circuit;
+  // Each mode beside the coordinate at rest as it follows the drive: away from it, and its rate;
+  // off_m: what that makes the coordinate off by, at most so far.
+  double away[DEA_REDUCED_MODES + 1][2], off_m;
 };
 
 struct dea_model {
@@ -35,18 +41,52 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   }
 }
 
+static double mass_at(const struct dea_reduced *core, const struct dea_reduced_mode *mode, double q)
+{
+  const double x = q - core->middle;
+  return mode->mass[0] + x * (mode->mass[1] + x * mode->mass[2]);
+}
+
+/* Of a mode in time, or of what these leave, at a state. */
+static double omega_at(const struct dea_reduced_order *o, int i, const struct dea_reduced_point *at)
+{
+  return i < o->core.mode_count
+             ? sqrt(1 / (at->by_force * mass_at(&o->core, &o->core.modes[i], at->q)))
+             : 2 * acos(-1.0) * o->left_Hz;
+}
+
+/* In which a voltage has to rise to the highest, as a ramp, so that what follow_drive estimates is
+ * within that part of the stroke: a mode is then away by the stroke over omega t/2 at most. */
+static double rise_s(const struct dea_reduced_order *o, double part)
+{
+  struct dea_reduced_point at;
+  double sum = 0;
+  dea_reduced_at(&o->core, 0, o->voltage_V[1], &at);
+  for (int i = 0; i <= o->core.mode_count; i++) {
+    const double w = omega_at(o, i, &at);
+    sum += w > 0 ? pow(2 * o->share_off[i] / w, 2) : 0;
+  }
+  return sqrt(sum) / part;
+}
+
 /* What the model is of and how far it goes. */
 static dea_status say(struct dea_context *ctx, const struct dea_model *model)
 {
   const struct dea_reduced_order *o = model->order;
-  char name[120];
+  char name[120], fastest[120] = "";
   dea_reduced_order_name(o, model->device, name, sizeof name);
+  if (o->core.mode_count > 0) {
+    snprintf(fastest, sizeof fastest,
+             "; with inertia within %.2g %% where the voltage takes %.2g ms or more to rise",
+             100 * follows, 1e3 * rise_s(o, follows));
+  }
   DEA_TRY(ctx, dea_finding_add(
                    ctx, DEA_NOTE, (struct dea_location){0},
                    "model reduced: %s up to %.4g kV, made from model 3d in %.3g s; off by %.2g %% "
                    "of the stroke and %.2g %% of the charge at samples that were left out of the "
-                   "fit",
-                   name, 1e-3 * o->voltage_V[1], o->made_s, 100 * o->error, 100 * o->charge_error));
+                   "fit%s",
+                   name, 1e-3 * o->voltage_V[1], o->made_s, 100 * o->error, 100 * o->charge_error,
+                   fastest));
   return DEA_OK;
 }
 
@@ -81,6 +121,12 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 
 // Points ------------------------------------------------------------------------------------------
 
+/* Of the fit, and in time of the modes. */
+static double error_m(const struct dea_model *model)
+{
+  return model->order->error * fabs(model->order->stroke) + model->trial.off_m;
+}
+
 /* Of the copies at the last point. */
 static double output_at(const struct dea_model *model, const struct dea_reduced_output *output)
 {
@@ -108,6 +154,9 @@ static void fill_point(const struct dea_model *model, struct dea_load_point *out
   }
   if (o->coordinate.column != 0) {
     dea_point_set(out, o->coordinate.column, at->q);
+  }
+  if (o->coordinate.column == dea_point_column_find("fibre_tip_z_m")) {
+    out->fibre_tip_z_error_m = error_m(model);
   }
   out->energy_J = at->energy_J - at->force * at->q;
   out->capacitance_F = at->voltage_V != 0 ? at->charge_C / at->voltage_V : at->charge_by_voltage;
@@ -161,22 +210,15 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-/* Of the fit, for its coordinate. */
 static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
 {
   const struct dea_reduced_order *o = model->order;
   (void)ctx;
   for (size_t i = 0; i < model->device->layout->monitor_count; i++) {
     const bool is_it = o->coordinate.column == 0 && o->coordinate.body == i;
-    error[i] = is_it ? o->error * fabs(o->stroke) : NAN;
+    error[i] = is_it ? error_m(model) : NAN;
   }
   return DEA_OK;
-}
-
-static double mass_at(const struct dea_reduced *core, const struct dea_reduced_mode *mode, double q)
-{
-  const double x = q - core->middle;
-  return mode->mass[0] + x * (mode->mass[1] + x * mode->mass[2]);
 }
 
 static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
@@ -338,6 +380,48 @@ static int step_once(const struct dea_model *model, const struct moment *from,
   return DEA_REDUCED_OK;
 }
 
+/* The modes along a straight piece of the coordinate at rest. Shares of dq/dV are means over the
+ * voltages, and what modes lack moves at once: by that much of how far a mode is away, which does
+ * not know its damping, the coordinate is off, taken as independent. */
+static void follow_drive(const struct dea_model *model, double length_s, struct moment *to)
+{
+  const struct dea_reduced_order *o = model->order;
+  const struct moment *from = &model->now;
+  const struct dea_reduced_point *rest = &to->film.copy[0].at;
+  const double by = rest->q - from->film.copy[0].at.q;
+  double sum = 0;
+  for (int i = 0; i <= o->core.mode_count; i++) {
+    const double w =
+        i < o->core.mode_count
+            ? sqrt(1 / (rest->by_force * mass_at(&o->core, &o->core.modes[i], rest->q)))
+            : 2 * acos(-1.0) * o->left_Hz;
+    const double *was = from->away[i];
+    if (!(length_s > 0) || !(w > 0)) {
+      to->away[i][0] = was[0] - by;
+    } else {
+      const double v = by / length_s, c = cos(w * length_s), s = sin(w * length_s);
+      to->away[i][0] = was[0] * c + (was[1] - v) / w * s;
+      to->away[i][1] = v + (was[1] - v) * c - w * was[0] * s;
+    }
+    sum += pow(o->share_off[i] * to->away[i][0], 2);
+  }
+  to->off_m = fmax(from->off_m, sqrt(sum));
+}
+
+/* Where the modes follow the drive no better than this, of the stroke, it is beyond the range. */
+static dea_status check_drive(struct dea_context *ctx, const struct dea_model *model)
+{
+  const struct dea_reduced_order *o = model->order;
+  const double part = model->trial.off_m / fabs(o->stroke), s = model->trial.film.time_s;
+  return part <= beyond
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DOMAIN,
+                        "at %.4g s the voltage has changed faster than the reduced-order model "
+                        "can follow: it may be off by %.2g %% of the stroke, more than %.2g %%; "
+                        "let the voltage rise more slowly or take model 3d",
+                        s, 100 * part, 100 * beyond);
+}
+
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *options, struct dea_load_point *out)
 {
@@ -406,6 +490,10 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
   }
   if (step->length_s > longest) { // whatever the answer, it is not to be relied on
     *error = step->length_s / longest;
+  }
+  if (model->options.inertia) {
+    follow_drive(model, step->length_s, &model->trial);
+    DEA_TRY(ctx, check_drive(ctx, model));
   }
   fill_moment(model, out);
   return DEA_OK;
