@@ -99,6 +99,11 @@ TEST(test_creep)
   }
   const double after = K * pow(s.at.q - q, 2) / 2 + s.branch_J;
   assert_close(s.loss_J, before - after, 1e-4, 0);
+  // a step that is short against tau
+  assert_int_equal(dea_reduced_step(&model, &s, 0, 0, 0, 0, 1, &s), DEA_REDUCED_OK);
+  const double lost = s.loss_J, power = 2 * s.branch_J / tau;
+  assert_int_equal(dea_reduced_step(&model, &s, 1e-9, 0, 0, 0, 1, &s), DEA_REDUCED_OK);
+  assert_close(s.loss_J - lost, 1e-9 * power, 1e-5, 0);
   dea_arena_free(&memory);
 }
 

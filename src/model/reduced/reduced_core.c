@@ -301,7 +301,7 @@ struct step {
   const struct dea_reduced_copy *from;
   const double *mass; // of the copy, or NULL
   double h, external[2];
-  double decay[DEA_REDUCED_BRANCHES], share[DEA_REDUCED_BRANCHES]; // exp(-h/tau)
+  double gone[DEA_REDUCED_BRANCHES], share[DEA_REDUCED_BRANCHES]; // gone: 1 - exp(-h/tau)
   double known[DEA_REDUCED_BRANCHES];
   double was; // what the begin of the step adds to the residual
   double a_m, a_f, beta, gamma;
@@ -377,17 +377,18 @@ static int jump(struct step *s, struct dea_reduced_copy *to)
   return end;
 }
 
-/* What branches lose while e goes straight: r = e - p is A + B exp(-t/tau). */
+/* What branches lose while e goes straight by d: with y = h/tau r = e - p is r exp(-t/tau) + d/y (1
+ * - exp(-t/tau)), in a form that loses no digits in short steps. */
 static double loss(const struct step *s, const struct dea_reduced_copy *to)
 {
-  const double h = s->h, e[2] = {strain(s->model, s->from->at.q), strain(s->model, to->at.q)};
+  const double h = s->h, e = strain(s->model, s->from->at.q), d = strain(s->model, to->at.q) - e;
   const double v = 0.5 * (s->from->rate + to->rate);
   double sum = s->model->damping * v * v * h;
   for (int i = 0; i < s->model->branch_count; i++) {
-    const double tau = s->model->branch_s[i], x = s->decay[i], A = (e[1] - e[0]) / h * tau;
-    const double B = e[0] - s->from->p[i] - A;
+    const double y = h / s->model->branch_s[i], E = s->gone[i], r = e - s->from->p[i];
+    const double last = y > 1e-3 ? y - E - E * E / 2 : y * y * y * (1.0 / 3 - y / 4);
     sum += s->model->branch_N_per_m[i] *
-           (A * A * h / tau + 2 * A * B * (1 - x) + B * B * (1 - x * x) / 2);
+           (r * r * (E - E * E / 2) + r * d * E * E / y + d * d / (y * y) * last);
   }
   return sum;
 }
@@ -397,7 +398,7 @@ static int step_copy(struct step *s, struct dea_reduced_copy *to)
 {
   const double h = s->h, e = strain(s->model, s->from->at.q);
   for (int i = 0; i < s->model->branch_count; i++) {
-    s->known[i] = s->decay[i] * s->from->p[i] + (1 - s->share[i] - s->decay[i]) * e;
+    s->known[i] = (1 - s->gone[i]) * s->from->p[i] + (s->gone[i] - s->share[i]) * e;
   }
   *to = *s->from;
   const int end = s->mass != NULL && !(h > 0) ? jump(s, to) : solve(s, to);
@@ -420,8 +421,8 @@ int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_s
   }
   for (int i = 0; i < model->branch_count; i++) {
     const double y = length_s / model->branch_s[i];
-    s.decay[i] = exp(-y);
-    s.share[i] = y > 1e-8 ? 1 - (1 - s.decay[i]) / y : y / 2;
+    s.gone[i] = -expm1(-y);
+    s.share[i] = y > 1e-4 ? 1 - s.gone[i] / y : y / 2 - y * y / 6;
   }
   s.a_m = (2 * rho - 1) / (rho + 1);
   s.a_f = rho / (rho + 1);
