@@ -107,4 +107,24 @@ TEST(test_creep)
   dea_arena_free(&memory);
 }
 
+/* A force that a mode takes more of than of the voltage is taken off: what has crept stays. */
+TEST(test_unloaded)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_reduced model = fitted(&memory, 1);
+  struct dea_reduced_state s;
+  model.branch_count = model.mode_count = 1;
+  model.branch_N_per_m[0] = 40;
+  model.branch_s[0] = 2;
+  model.modes[0] = (struct dea_reduced_mode){.mass = {0.02}, .share = 0.7, .voltage_share = 0.5};
+  assert_int_equal(dea_reduced_begin(&model, 0, 0, &s), DEA_REDUCED_OK);
+  assert_int_equal(dea_reduced_step(&model, &s, 1, 0, 0.5 * F_m, 1, 0, &s), DEA_REDUCED_OK);
+  assert_int_equal(dea_reduced_step(&model, &s, 0, 0, 0, 1, 0, &s), DEA_REDUCED_OK);
+  const double q = s.at.q, stored_J = s.branch_J;
+  assert_int_equal(dea_reduced_step(&model, &s, 1e-6, 0, 0, 1, 0, &s), DEA_REDUCED_OK);
+  assert_close(s.at.q, q, 1e-5, 0);
+  assert_close(s.branch_J, stored_J, 1e-5, 0);
+  dea_arena_free(&memory);
+}
+
 TESTS(context_set_up, context_tear_down)

@@ -408,6 +408,16 @@ static int step_copy(struct step *s, struct dea_reduced_copy *to)
   return end;
 }
 
+/* Whether a copy is where the first one is: without a force it then stays so. */
+static int is_as_first(const struct dea_reduced *model, const struct dea_reduced_state *s, int k)
+{
+  int same = s->copy[k].at.q == s->copy[0].at.q;
+  for (int i = 0; i < model->branch_count; i++) {
+    same = same && s->copy[k].p[i] == s->copy[0].p[i];
+  }
+  return same;
+}
+
 int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_state *from,
                      double length_s, double voltage_V, double external, int inertia, double rho,
                      struct dea_reduced_state *to)
@@ -430,7 +440,7 @@ int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_s
   s.gamma = 0.5 - s.a_m + s.a_f;
   to->external = external;
   for (int k = 0; k < copies_of(model); k++) {
-    if (k > 0 && !loaded && (k % 2 == 0 || !inertia)) { // as the first
+    if (k > 0 && !loaded && (k % 2 == 0 || !inertia) && is_as_first(model, &n, k)) {
       to->copy[k] = to->copy[0];
       continue;
     }
