@@ -4,7 +4,7 @@
 #include <stddef.h>
 
 enum { TRIALS = 60 };
-static const double settled = 1e-13, beyond = 1e-9; // of the range
+static const double near = 1e-7, beyond = 1e-9; // of the range
 
 static int cell_of(const struct dea_reduced_spline *s, int k, double x, double *at, double *width)
 {
@@ -52,6 +52,7 @@ static void line_at(const struct dea_reduced_spline *spline, int i, int j, doubl
 static void point_of_line(const struct line *line, double s, double width, double out[6])
 {
   double f = 0, f_s = 0, f_ss = 0, g = 0, g_s = 0, h = 0; // g, h: slopes by y
+  const double per = 1 / width;
   for (int i = DEA_REDUCED_TERMS - 1; i >= 0; i--) {
     f_ss = f_ss * s + f_s;
     f_s = f_s * s + f;
@@ -61,10 +62,10 @@ static void point_of_line(const struct line *line, double s, double width, doubl
     h = h * s + line->at[2][i];
   }
   out[0] = f;
-  out[1] = f_s / width;
+  out[1] = f_s * per;
   out[2] = g;
-  out[3] = 2 * f_ss / (width * width);
-  out[4] = g_s / width;
+  out[3] = 2 * f_ss * per * per;
+  out[4] = g_s * per;
   out[5] = h;
 }
 
@@ -148,10 +149,21 @@ static int correct(const struct dea_reduced *model, double step, double *force)
   return *force != was || was - step == was;
 }
 
-static int is_settled(const struct dea_reduced *model, double step)
+/* Whether a step of Newton's method is the last one: what it leaves goes with its square, so that
+ * the slopes take the point there. */
+static int is_last(const struct dea_reduced *model, double step)
 {
   const struct dea_reduced_spline *s = &model->energy;
-  return fabs(step) <= settled * (s->breaks[0][s->cells[0]] - s->breaks[0][0]);
+  return fabs(step) <= near * (s->breaks[0][s->cells[0]] - s->breaks[0][0]);
+}
+
+static void move_to(double force, struct dea_reduced_point *p)
+{
+  const double by = force - p->force;
+  p->q += p->by_force * by;
+  p->charge_C += p->by_voltage * by;
+  p->energy_J += (p->force + 0.5 * by) * p->by_force * by;
+  p->force = force;
 }
 
 static int hold(struct section *section, double q, struct dea_reduced_point *out)
@@ -164,11 +176,12 @@ static int hold(struct section *section, double q, struct dea_reduced_point *out
     if (end != DEA_REDUCED_OK) {
       return end;
     }
-    if (is_settled(model, step)) {
-      return DEA_REDUCED_OK;
-    }
     if (!correct(model, step, &force)) {
       return DEA_REDUCED_BEYOND_FORCE;
+    }
+    if (is_last(model, step)) {
+      move_to(force, out);
+      return DEA_REDUCED_OK;
     }
   }
   return DEA_REDUCED_NOT_CONVERGED;
@@ -302,9 +315,10 @@ struct step {
   const double *mass; // of the copy, or NULL
   double h, external[2];
   double gone[DEA_REDUCED_BRANCHES], share[DEA_REDUCED_BRANCHES]; // gone: 1 - exp(-h/tau)
-  double known[DEA_REDUCED_BRANCHES];
+  double known[DEA_REDUCED_BRANCHES], lost[DEA_REDUCED_BRANCHES][3];
   double was; // what the begin of the step adds to the residual
-  double a_m, a_f, beta, gamma;
+  double a_m, a_f, gamma;
+  double a_q, a_a, v_q; // slopes of the acceleration by q and by that before, of the rate by q
 };
 
 /* What the device does not balance of the force at a state, its branches at p. */
@@ -331,8 +345,8 @@ static double residual(const struct step *s, struct dea_reduced_copy *to, double
     *slope = 1 / to->at.by_force + by_q + (h > 0 ? c / h : 0);
     return r;
   }
-  const double a_q = 1 / (s->beta * h * h), v_q = s->gamma / (s->beta * h);
-  to->acceleration = (q - n->at.q - h * n->rate) * a_q - (0.5 / s->beta - 1) * n->acceleration;
+  const double a_q = s->a_q, v_q = s->v_q;
+  to->acceleration = (q - n->at.q - h * n->rate) * a_q - s->a_a * n->acceleration;
   to->rate = n->rate + h * ((1 - s->gamma) * n->acceleration + s->gamma * to->acceleration);
   const double now =
       inertia_at(s->model, s->mass, q, to->rate, to->acceleration, a_q, v_q, &inertia_q);
@@ -356,11 +370,13 @@ static int solve(struct step *s, struct dea_reduced_copy *to)
       return end;
     }
     const double step = residual(s, to, &slope) / (slope * to->at.by_force);
-    if (is_settled(s->model, step)) {
-      return DEA_REDUCED_OK;
-    }
     if (!correct(s->model, step, &force)) {
       return DEA_REDUCED_BEYOND_FORCE;
+    }
+    if (is_last(s->model, step)) {
+      move_to(force, &to->at);
+      residual(s, to, &slope);
+      return DEA_REDUCED_OK;
     }
   }
   return DEA_REDUCED_NOT_CONVERGED;
@@ -385,10 +401,8 @@ static double loss(const struct step *s, const struct dea_reduced_copy *to)
   const double v = 0.5 * (s->from->rate + to->rate);
   double sum = s->model->damping * v * v * h;
   for (int i = 0; i < s->model->branch_count; i++) {
-    const double y = h / s->model->branch_s[i], E = s->gone[i], r = e - s->from->p[i];
-    const double last = y > 1e-3 ? y - E - E * E / 2 : y * y * y * (1.0 / 3 - y / 4);
-    sum += s->model->branch_N_per_m[i] *
-           (r * r * (E - E * E / 2) + r * d * E * E / y + d * d / (y * y) * last);
+    const double r = e - s->from->p[i], *lost = s->lost[i];
+    sum += s->model->branch_N_per_m[i] * (r * (r * lost[0] + d * lost[1]) + d * d * lost[2]);
   }
   return sum;
 }
@@ -431,13 +445,21 @@ int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_s
   }
   for (int i = 0; i < model->branch_count; i++) {
     const double y = length_s / model->branch_s[i];
-    s.gone[i] = -expm1(-y);
-    s.share[i] = y > 1e-4 ? 1 - s.gone[i] / y : y / 2 - y * y / 6;
+    const double E = -expm1(-y),
+                 last = y > 1e-3 ? y - E - E * E / 2 : y * y * y * (1.0 / 3 - y / 4);
+    s.gone[i] = E;
+    s.share[i] = y > 1e-4 ? 1 - E / y : y / 2 - y * y / 6;
+    s.lost[i][0] = E - E * E / 2;
+    s.lost[i][1] = y > 0 ? E * E / y : 0;
+    s.lost[i][2] = y > 0 ? last / (y * y) : 0;
   }
   s.a_m = (2 * rho - 1) / (rho + 1);
   s.a_f = rho / (rho + 1);
-  s.beta = (1 - s.a_m + s.a_f) * (1 - s.a_m + s.a_f) / 4;
+  const double beta = (1 - s.a_m + s.a_f) * (1 - s.a_m + s.a_f) / 4;
   s.gamma = 0.5 - s.a_m + s.a_f;
+  s.a_q = length_s > 0 ? 1 / (beta * length_s * length_s) : 0;
+  s.v_q = s.gamma * length_s * s.a_q;
+  s.a_a = 0.5 / beta - 1;
   to->external = external;
   for (int k = 0; k < copies_of(model); k++) {
     if (k > 0 && !loaded && (k % 2 == 0 || !inertia) && is_as_first(model, &n, k)) {
