@@ -210,6 +210,7 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+/* Of the fit, for its coordinate. */
 static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
 {
   const struct dea_reduced_order *o = model->order;
