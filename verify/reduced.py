@@ -97,7 +97,7 @@ make.before = 0
 
 def checks(device):
     program = WORK / device["id"]
-    subprocess.run(["cc", "-std=c99", "-O2", "-include", WORK / (device["id"] + ".c"), ROOT / "verify/reduced_check.c", "-lm", "-o",
+    subprocess.run(["cc", "-std=c99", "-O3", "-include", WORK / (device["id"] + ".c"), ROOT / "verify/reduced_check.c", "-lm", "-o",
                     program], check=True)
     return subprocess.run([program], capture_output=True, text=True, check=True).stdout.split()
 

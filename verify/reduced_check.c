@@ -1,5 +1,5 @@
 /* Of a device's C source (dea reduce-order --c): reciprocity, balance of energy of a free motion,
- * steps a second.   cc -O2 -include DEVICE.c reduced_check.c -lm */
+ * steps a second.   cc -O3 -include DEVICE.c reduced_check.c -lm */
 #include <stdio.h>
 #include <time.h>
 
