@@ -64,9 +64,13 @@ static dea_status make(struct dea_cli *cli, const void *user, const struct dea_d
   if (status == DEA_OK && request->c != NULL) {
     status = dea_reduced_order_write_c(cli->ctx, order, device, request->c);
   }
-  if (status == DEA_OK && (request->state_space != NULL || request->spice != NULL)) {
+  if (status == DEA_OK && request->state_space != NULL) {
     status = dea_reduced_order_write_state_space(cli->ctx, order, request->bias_V, request->damping,
-                                                 request->state_space, request->spice);
+                                                 request->state_space);
+  }
+  if (status == DEA_OK && request->spice != NULL) {
+    status = dea_reduced_order_write_spice(cli->ctx, order, request->bias_V, request->damping,
+                                           request->spice);
   }
   if (status == DEA_OK) {
     print_order(request, order, device);
@@ -91,10 +95,11 @@ static const struct cli_option options[] = {
      "and charge",
      CLI_AT(state_space)},
     {"spice", 0, CLI_NEW_FILE, "FILE",
-     "write the same as a subcircuit dea_film of ngspice: electrodes and displacement",
+     "write it as a subcircuit dea_film of ngspice: electrodes and displacement, at any voltage",
      CLI_AT(spice)},
-    {"bias", 0, CLI_TEXT, "V", "voltage that they are at, as '3 kV'; 0 if not given",
-     CLI_AT(bias_V), cli_take_quantity, .measure = {"V", "3 kV"}},
+    {"bias", 0, CLI_TEXT, "V",
+     "voltage of the state space, and of --damping, as '3 kV'; 0 if not given", CLI_AT(bias_V),
+     cli_take_quantity, .measure = {"V", "3 kV"}},
     {"damping", 0, CLI_TEXT, "RATIO", "of the critical damping of each mode, as 0.02",
      CLI_AT(damping), cli_take_quantity, .measure = {"1", "0.02"}},
     CLI_SET_ROW('s', CLI_KEY, "compute.reduced.monitor=hub"),

@@ -1,6 +1,7 @@
 #!/bin/sh
 # What dea reduce-order writes, in the programs that it is for: the state space in Octave and numpy
-# beside study frequency; the subcircuit in ngspice, behind a resistor, beside numpy.
+# beside study frequency; the subcircuit in ngspice, behind a resistor, beside study transient of
+# models reduced and 3d, and its small motions beside the state space.
 # ctest: octave, solid
 set -u
 source=$1
@@ -14,8 +15,6 @@ design=$source/examples/devices/cone-mass.yaml
   -s compute.reduced.file=cone.json \
   -s 'compute.frequency={bias: [3 kV], excitation: 1 V, from: 2 Hz, to: 40 Hz, points: 25, damping: 0.03}' \
   >out 2>&1 || { cat out; exit 1; }
-"$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --bias '3 kV' \
-  --state-space free-ss.json --spice film.cir >out 2>&1 || { cat out; exit 1; }
 cat >look.m <<'END'
 s = jsondecode(fileread('cone-ss.json'));
 G = @(f) s.C * ((2i * pi * f * eye(rows(s.A)) - s.A) \ s.B) + s.D;
@@ -27,23 +26,6 @@ for f = [2 5 11 12 20], fprintf(fid, '%.17g,%.17g\n', f, abs(G(f)(1, 1))); end
 fclose(fid);
 END
 { octave-cli --no-init-file look.m && grep -q . octave.csv; } >out 2>&1 || { cat out; exit 1; }
-command -v ngspice >/dev/null || { echo "ngspice is needed: apt-get install ngspice (packages.txt)"; exit 1; }
-cat >step.cir <<'END'
-a driver with the film
-.include film.cir
-Vs s 0 PWL(0 3000 1m 3050)
-Rs s p 20meg
-Xf p 0 q dea_film
-.options reltol=1e-6
-.control
-tran 50u 0.1 0 50u
-wrdata step.txt v(p) v(q)
-quit
-.endc
-.end
-END
-ngspice -b step.cir >out 2>&1
-[ -s step.txt ] || { cat out; exit 1; }
 /usr/bin/python3 - <<'END' || exit 1
 import csv, glob, json
 import numpy as np
@@ -60,30 +42,62 @@ for r in row:
     wanted = float(r[key]) * unit
     got = abs(G(float(r['frequency (Hz)']))[0, 0])
     assert abs(got / wanted - 1) < 1e-6, (r['frequency (Hz)'], got, wanted)
-# the step: (V_s - V)/R is the slope of the charge C x + D u
-s = json.load(open('free-ss.json'))
+END
+command -v ngspice >/dev/null || { echo "subcircuit not run: apt-get install ngspice (packages.txt)"; exit 0; }
+"$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --spice film.cir >out 2>&1 &&
+  "$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --bias '3 kV' \
+    --damping 0.03 --spice damped.cir >out 2>&1 || { cat out; exit 1; }
+for model in reduced 3d; do
+  "$DEA_COMMAND" run "$design" --model $model --study transient --no-figures -o $model \
+    -s compute.reduced.file=cone.json -s "compute.transient={inertia: yes, tolerance: 2e-3}" \
+    -s 'drive={series_resistance: 20 Mohm, waveform: {kind: step, to: 4 kV, rise_time: 1 ms, duration: 20 ms}}' \
+    >out 2>&1 || { cat out; exit 1; }
+done
+cat >step.cir <<'END'
+a driver with the film
+.include film.cir
+Vs s 0 PWL(0 0 1m 4000)
+Rs s p 20meg
+Xf p 0 q dea_film
+.options reltol=1e-5
+.control
+tran 50u 0.02 0 50u
+wrdata step.txt v(p) v(q)
+quit
+.endc
+.end
+END
+cat >ac.cir <<'END'
+small motions at 3 kV
+.include damped.cir
+Vs p 0 DC 3000 AC 1
+Xf p 0 q dea_film
+.control
+ac lin 7 2 20
+wrdata ac.txt v(q) i(vs)
+quit
+.endc
+.end
+END
+timeout 60 ngspice -b step.cir >out 2>&1
+timeout 60 ngspice -b ac.cir >>out 2>&1
+[ -s step.txt ] && [ -s ac.txt ] || { cat out; exit 1; }
+/usr/bin/python3 - <<'END' || exit 1
+import csv, json
+import numpy as np
+t, V, _, z = np.loadtxt('step.txt').T
+for model in 'reduced', '3d':
+    rows = list(csv.DictReader(open(f'{model}/{model}_transient.csv')))
+    at, own_V, own_z = (np.array([float(r[k]) for r in rows]) for k in ('time (s)', 'V (kV)', 'hub z (um)'))
+    off = [np.max(np.abs(np.interp(at, t, got) - own)) / np.ptp(own)
+           for got, own in ((V, 1e3 * own_V), (z, own_z))]
+    print(f'ngspice beside {model}: voltage {100 * off[0]:.2g} %, displacement {100 * off[1]:.2g} %')
+    assert max(off) < 0.01, model
+s = json.load(open('cone-ss.json'))
 A, B, C, D = (np.array(s[k]) for k in 'ABCD')
-b, d = B[:, 0], D[:, 0]
-R, V0, q0 = 20e6, s['bias_inputs'][0], s['bias_outputs'][0]
-n = len(A)
-M = np.zeros((n + 1, n + 1)) # of x and u, and what the source adds
-M[:n, :n], M[:n, n] = A, b
-M[n, :n], M[n, n] = -C[1] @ A / d[1], (-1 / R - C[1] @ b) / d[1]
-g = np.zeros(n + 1)
-g[n] = 1 / (R * d[1])
-h, t, z = 5e-5, 0.0, np.zeros(n + 1)
-left, right = np.eye(n + 1) - h / 2 * M, np.eye(n + 1) + h / 2 * M
-own = [(0.0, 0.0, 0.0)]
-source = lambda t: 50 * min(t / 1e-3, 1)
-while t < 0.1:
-    z = np.linalg.solve(left, right @ z + h / 2 * g * (source(t) + source(t + h)))
-    t += h
-    own.append((t, z[n], C[0] @ z[:n] + d[0] * z[n]))
-own = np.array(own)
-spice = np.loadtxt('step.txt')
-for column, k, offset, unit in ((1, 1, V0, 1), (3, 2, q0 * 1e6, 1e-6)):
-    got = (spice[:, column] - offset) * unit
-    wanted = np.interp(spice[:, 0], own[:, 0], own[:, k])
-    off = np.max(np.abs(got - wanted)) / np.ptp(wanted)
-    assert off < 1e-3, (column, off)
+for f, re_q, im_q, _, re_i, im_i in np.loadtxt('ac.txt'):
+    w = 2j * np.pi * f
+    q, charge = (C @ np.linalg.solve(w * np.eye(len(A)) - A, B) + D)[:, 0]
+    assert abs(1e-6 * (re_q + 1j * im_q) / q - 1) < 1e-5, f
+    assert abs(-(re_i + 1j * im_i) / (w * charge) - 1) < 1e-5, f
 END

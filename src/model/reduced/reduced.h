@@ -52,12 +52,17 @@ dea_status dea_reduced_order_read(struct dea_context *ctx, const char *path,
 /* The two files of reduced_core.[ch] and one with the device's numbers, in C99. */
 dea_status dea_reduced_order_write_c(struct dea_context *ctx, const struct dea_reduced_order *order,
                                      const struct dea_device *device, const char *path);
-/* As a linear system at a voltage without a force: A, B, C, D in JSON, and a subcircuit of SPICE;
- * NULL: not wanted. damping_ratio: of each mode, of the critical one. */
+/* As a linear system at a voltage without a force, A, B, C, D in JSON; damping_ratio: of each mode,
+ * of the critical one. */
 dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,
                                                const struct dea_reduced_order *order,
                                                double voltage_V, double damping_ratio,
-                                               const char *path, const char *spice);
+                                               const char *path);
+/* As a subcircuit of ngspice at any voltage of the range, with the dashpots that have that ratio at
+ * voltage_V. */
+dea_status dea_reduced_order_write_spice(struct dea_context *ctx,
+                                         const struct dea_reduced_order *order, double voltage_V,
+                                         double damping_ratio, const char *path);
 void dea_reduced_order_destroy(struct dea_context *ctx, struct dea_reduced_order *order);
 
 /* "hub z", with its unit. */

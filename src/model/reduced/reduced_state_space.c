@@ -1,6 +1,5 @@
-/* A reduced-order model as a linear system at a bias, in JSON or as a subcircuit. */
+/* A reduced-order model as a linear system at a bias, in JSON. */
 #include "base/json.h"
-#include "base/text.h"
 #include "base/version.h"
 #include "base/write_file.h"
 #include "model/reduced/reduced.h"
@@ -130,49 +129,14 @@ static json_t *system_json(const struct bias *b, const struct system *s, bool tu
   return root;
 }
 
-/* A node a state, whose capacitor of 1 F integrates: states and coordinate in millionths, the
- * charge in nC; its current is that of a capacitor of 1 F at that voltage. */
-static const char *system_spice(struct dea_text *out, const struct bias *b, const struct system *s)
-{
-  static const char *const ports[PORTS] = {"q", "charge"};
-  static const double unit[PORTS] = {1e-6, 1e-9};
-  const double state = 1e-6, at[PORTS] = {b->at.q, b->at.charge_C};
-  void *locale = dea_c_locale_enter();
-  dea_text_add(out,
-               "* small motions of a film at %.6g V, by dea %s\n"
-               "* p, n: its electrodes; q: displacement, 1 V a micrometre (a turn: a microradian)\n"
-               ".subckt dea_film p n q\nBu u 0 V=V(p,n)-(%.17g)\n",
-               b->at.voltage_V, DEA_VERSION, b->at.voltage_V);
-  for (size_t i = 0; i < s->states; i++) {
-    dea_text_add(out, "Cx%zu x%zu 0 1\nGu%zu 0 x%zu u 0 %.17g\n", i, i, i, i, s->B[i][0] / state);
-    for (size_t k = 0; k < s->states; k++) {
-      if (s->A[i][k] != 0) {
-        dea_text_add(out, "Gx%zu_%zu 0 x%zu x%zu 0 %.17g\n", i, k, i, k, s->A[i][k]);
-      }
-    }
-  }
-  for (int j = 0; j < PORTS; j++) {
-    const char *to = ports[j];
-    dea_text_add(out, "R%s %s 0 1\nI%s 0 %s DC %.17g\nG%su 0 %s u 0 %.17g\n", to, to, to, to,
-                 at[j] / unit[j], to, to, s->D[j][0] / unit[j]);
-    for (size_t i = 0; i < s->states; i++) {
-      dea_text_add(out, "G%s%zu 0 %s x%zu 0 %.17g\n", to, i, to, i, s->C[j][i] * state / unit[j]);
-    }
-  }
-  dea_text_add(out, "Ei c 0 charge 0 1\nCi c d 1\nVi d 0 0\nFi p n Vi 1e-9\n.ends\n");
-  dea_c_locale_leave(locale);
-  return out->failed ? NULL : dea_text_get(out);
-}
-
 dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,
                                                const struct dea_reduced_order *order,
                                                double voltage_V, double damping_ratio,
-                                               const char *path, const char *spice)
+                                               const char *path)
 {
   struct bias b = {.core = &order->core, .damping_ratio = damping_ratio};
   const bool turns = order->coordinate.column == 0 && order->coordinate.component >= 3;
   const int end = dea_reduced_at(b.core, 0, voltage_V, &b.at);
-  struct dea_text circuit = {.ctx = ctx};
   char *text = NULL;
   if (end != DEA_REDUCED_OK) {
     return dea_reduced_fail(ctx, order, end, voltage_V);
@@ -188,17 +152,9 @@ dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,
     return DEA_E_MEMORY;
   }
   add_all(&b, s);
-  dea_status status = DEA_OK;
-  if (path != NULL) {
-    status = dea_json_text(ctx, system_json(&b, s, turns), &text);
-    status = status == DEA_OK ? dea_file_write(ctx, path, text, strlen(text)) : status;
-    dea_free(ctx, text);
-  }
-  if (status == DEA_OK && spice != NULL) {
-    const char *lines = system_spice(&circuit, &b, s);
-    status = lines == NULL ? DEA_E_MEMORY : dea_file_write(ctx, spice, lines, circuit.length);
-  }
-  dea_text_free(&circuit);
+  dea_status status = dea_json_text(ctx, system_json(&b, s, turns), &text);
+  status = status == DEA_OK ? dea_file_write(ctx, path, text, strlen(text)) : status;
+  dea_free(ctx, text);
   dea_free(ctx, s);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
