@@ -5,7 +5,7 @@
 #include <math.h>
 
 struct request {
-  const char *design, *output, *c, *state_space, *spice;
+  const char *design, *output, *c, *fmu, *state_space, *spice;
   double bias_V, damping;
   struct cli_overrides overrides;
   bool json;
@@ -64,6 +64,9 @@ static dea_status make(struct dea_cli *cli, const void *user, const struct dea_d
   if (status == DEA_OK && request->c != NULL) {
     status = dea_reduced_order_write_c(cli->ctx, order, device, request->c);
   }
+  if (status == DEA_OK && request->fmu != NULL) {
+    status = dea_reduced_order_write_fmu(cli->ctx, order, device, request->fmu);
+  }
   if (status == DEA_OK && request->state_space != NULL) {
     status = dea_reduced_order_write_state_space(cli->ctx, order, request->bias_V, request->damping,
                                                  request->state_space);
@@ -90,6 +93,8 @@ static const struct cli_option options[] = {
     CLI_OUTPUT_ROW(CLI_NEW_FILE, "FILE",
                    "write the model as FILE (JSON), for compute.reduced.file"),
     {"c", 0, CLI_NEW_FILE, "FILE", "write it as C99 source, with its test", CLI_AT(c)},
+    {"fmu", 0, CLI_NEW_FILE, "FILE", "write it as a unit of FMI 3.0 for co-simulation",
+     CLI_AT(fmu)},
     {"state-space", 0, CLI_NEW_FILE, "FILE",
      "write A, B, C, D of small motions at the bias (JSON), from voltage and force to displacement "
      "and charge",

@@ -1,7 +1,8 @@
 #!/bin/sh
 # What dea reduce-order writes, in the programs that it is for: the state space in Octave and numpy
 # beside study frequency; the subcircuit in ngspice, behind a resistor, beside study transient of
-# models reduced and 3d, and its small motions beside the state space.
+# models reduced and 3d, and its small motions beside the state space; the unit of FMI 3.0 in a small
+# importer (DEA_FMI_SCHEMA: folder of the standard's schemas, against which its XML is then checked).
 # ctest: octave, solid
 set -u
 source=$1
@@ -43,16 +44,77 @@ for r in row:
     got = abs(G(float(r['frequency (Hz)']))[0, 0])
     assert abs(got / wanted - 1) < 1e-6, (r['frequency (Hz)'], got, wanted)
 END
-command -v ngspice >/dev/null || { echo "subcircuit not run: apt-get install ngspice (packages.txt)"; exit 0; }
-"$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --spice film.cir >out 2>&1 &&
-  "$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --bias '3 kV' \
-    --damping 0.03 --spice damped.cir >out 2>&1 || { cat out; exit 1; }
 for model in reduced 3d; do
   "$DEA_COMMAND" run "$design" --model $model --study transient --no-figures -o $model \
     -s compute.reduced.file=cone.json -s "compute.transient={inertia: yes, tolerance: 2e-3}" \
     -s 'drive={series_resistance: 20 Mohm, waveform: {kind: step, to: 4 kV, rise_time: 1 ms, duration: 20 ms}}' \
     >out 2>&1 || { cat out; exit 1; }
 done
+{ "$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --fmu cone.fmu >out 2>&1 &&
+  /usr/bin/python3 -m zipfile -e cone.fmu fmu; } || { cat out; exit 1; }
+if [ -n "${DEA_FMI_SCHEMA:-}" ]; then
+  xmllint --noout --schema "$DEA_FMI_SCHEMA/fmi3ModelDescription.xsd" fmu/modelDescription.xml || exit 1
+  xmllint --noout --schema "$DEA_FMI_SCHEMA/fmi3BuildDescription.xsd" fmu/sources/buildDescription.xml || exit 1
+fi
+/usr/bin/python3 - <<'END' || exit 1
+import csv, ctypes as c, glob
+import xml.etree.ElementTree as xml
+root = xml.parse('fmu/modelDescription.xml').getroot()
+reference = {v.get('name'): int(v.get('valueReference')) for v in root.find('ModelVariables')}
+unit = c.CDLL(glob.glob('./fmu/binaries/*-linux/')[0] + root.find('CoSimulation').get('modelIdentifier') + '.so')
+unit.fmi3InstantiateCoSimulation.restype = c.c_void_p
+unit.fmi3GetVersion.restype = c.c_char_p
+assert unit.fmi3GetVersion() == root.get('fmiVersion').encode()
+make = lambda token: unit.fmi3InstantiateCoSimulation(
+    b'cone', token, None, False, False, False, False, None, c.c_size_t(0), None, None, None)
+assert make(b'another device') is None
+one = c.c_void_p(make(root.get('instantiationToken').encode()))
+def call(function, name, value=0.0):
+    at = (c.c_uint32 * 1)(reference[name])
+    values = (c.c_double * 1)(value)
+    return function(one, at, c.c_size_t(1), values, c.c_size_t(1)), values[0]
+def put(name, value):
+    assert call(unit.fmi3SetFloat64, name, value)[0] == 0
+def get(name):
+    status, value = call(unit.fmi3GetFloat64, name)
+    assert status == 0
+    return value
+now, h = 0.0, 5e-5
+def step():
+    flags, last = [c.c_bool() for _ in range(3)], c.c_double()
+    return unit.fmi3DoStep(one, c.c_double(now), c.c_double(h), True, *map(c.byref, flags), c.byref(last))
+assert unit.fmi3EnterInitializationMode(one, False, c.c_double(0), c.c_double(0), False, c.c_double(0)) == 0
+put('series_resistance', 20e6)
+assert unit.fmi3ExitInitializationMode(one) == 0
+assert call(unit.fmi3SetFloat64, 'series_resistance', 1e6)[0] != 0 # fixed by now
+rows = [[float(r[k]) for k in ('time (s)', 'V (kV)', 'hub z (um)', 'charge (nC)')]
+        for r in csv.DictReader(open('reduced/reduced_transient.csv'))]
+worst, sizes = [0.0] * 3, [max(r[k] for r in rows) - min(r[k] for r in rows) for k in (1, 2, 3)]
+for number in range(400):
+    put('voltage', 4000 * min((now + h / 2) / 1e-3, 1))
+    if number == 100: # a state that is kept gives the same step again
+        kept = c.c_void_p()
+        assert unit.fmi3GetFMUState(one, c.byref(kept)) == 0 and step() == 0
+        first = get('displacement')
+        assert unit.fmi3SetFMUState(one, kept) == 0 and unit.fmi3FreeFMUState(one, c.byref(kept)) == 0
+    assert step() == 0
+    assert number != 100 or get('displacement') == first
+    now += h
+    own = [1e-3 * get('film_voltage'), 1e6 * get('displacement'), 1e9 * get('charge')]
+    for r in rows:
+        if abs(r[0] - now) < 1e-9:
+            worst = [max(w, abs(a - b) / size) for w, a, b, size in zip(worst, own, r[1:], sizes)]
+print('FMU beside reduced: voltage %.2g %%, displacement %.2g %%, charge %.2g %%' % tuple(100 * w for w in worst))
+assert 0 < max(worst) < 0.01
+put('voltage', 1e5)
+h = 1.0
+assert step() == 3 # beyond the range
+unit.fmi3FreeInstance(one)
+END
+command -v ngspice >/dev/null || { echo "subcircuit not run: apt-get install ngspice (packages.txt)"; exit 0; }
+{ "$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --spice film.cir >out 2>&1 &&
+  "$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --bias '3 kV' \
+    --damping 0.03 --spice damped.cir >out 2>&1; } || { cat out; exit 1; }
 cat >step.cir <<'END'
 a driver with the film
 .include film.cir
@@ -81,7 +143,7 @@ quit
 END
 timeout 60 ngspice -b step.cir >out 2>&1
 timeout 60 ngspice -b ac.cir >>out 2>&1
-[ -s step.txt ] && [ -s ac.txt ] || { cat out; exit 1; }
+{ [ -s step.txt ] && [ -s ac.txt ]; } || { cat out; exit 1; }
 /usr/bin/python3 - <<'END' || exit 1
 import csv, json
 import numpy as np

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "model/reduced/reduced_core.h"
 
@@ -52,6 +53,13 @@ dea_status dea_reduced_order_read(struct dea_context *ctx, const char *path,
 /* The two files of reduced_core.[ch] and one with the device's numbers, in C99. */
 dea_status dea_reduced_order_write_c(struct dea_context *ctx, const struct dea_reduced_order *order,
                                      const struct dea_device *device, const char *path);
+/* The same as text. */
+void dea_reduced_order_c(const struct dea_reduced_order *order, const struct dea_device *device,
+                         struct dea_text *out);
+/* As a functional mock-up unit of FMI 3.0 (co-simulation), with a library where cc is. */
+dea_status dea_reduced_order_write_fmu(struct dea_context *ctx,
+                                       const struct dea_reduced_order *order,
+                                       const struct dea_device *device, const char *path);
 /* As a linear system at a voltage without a force, A, B, C, D in JSON; damping_ratio: of each mode,
  * of the critical one. */
 dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,

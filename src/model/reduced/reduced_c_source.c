@@ -132,23 +132,29 @@ static void add_points(struct dea_text *out, const struct dea_reduced_order *o)
   dea_text_add(out, "};\n#endif\n\n");
 }
 
-dea_status dea_reduced_order_write_c(struct dea_context *ctx, const struct dea_reduced_order *order,
-                                     const struct dea_device *device, const char *path)
+void dea_reduced_order_c(const struct dea_reduced_order *order, const struct dea_device *device,
+                         struct dea_text *out)
 {
-  struct dea_text text = {.ctx = ctx};
   const bool turns = order->coordinate.column == 0 && order->coordinate.component >= 3;
   char name[120];
   dea_reduced_order_name(order, device, name, sizeof name);
   void *locale = dea_c_locale_enter();
-  dea_text_add(&text, head, name, DEA_VERSION, order->force[0], order->force[1],
-               turns ? "N m" : "N", order->voltage_V[0], order->voltage_V[1], 100 * order->error,
-               order->stroke, turns ? "rad" : "m", 100 * order->charge_error);
-  add_core(&text);
-  dea_text_add(&text, "\n");
-  add_device(&text, &order->core);
-  add_points(&text, order);
-  dea_text_add(&text, "%s", test);
+  dea_text_add(out, head, name, DEA_VERSION, order->force[0], order->force[1], turns ? "N m" : "N",
+               order->voltage_V[0], order->voltage_V[1], 100 * order->error, order->stroke,
+               turns ? "rad" : "m", 100 * order->charge_error);
+  add_core(out);
+  dea_text_add(out, "\n");
+  add_device(out, &order->core);
+  add_points(out, order);
+  dea_text_add(out, "%s", test);
   dea_c_locale_leave(locale);
+}
+
+dea_status dea_reduced_order_write_c(struct dea_context *ctx, const struct dea_reduced_order *order,
+                                     const struct dea_device *device, const char *path)
+{
+  struct dea_text text = {.ctx = ctx};
+  dea_reduced_order_c(order, device, &text);
   dea_status status =
       text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
   dea_text_free(&text);
