@@ -21,6 +21,8 @@ struct film_model {
   struct dea_device *device;       // owned
   const struct dea_model_type *type;
   struct dea_model *model; // owned
+  bool by_monitor;         // it moves by `motion`; a table does so itself
+  struct dea_film_motion motion;
 };
 
 static void destroy(struct dea_context *ctx, struct dea_bench_film *film)
@@ -66,6 +68,7 @@ static void close_model(struct dea_context *ctx, struct dea_bench_model *model)
   if (m->model != NULL) {
     m->type->destroy(ctx, m->model);
   }
+  dea_monitor_set_free(&m->motion.set);
   dea_device_destroy(ctx, m->device);
   dea_free(ctx, m);
 }
@@ -88,13 +91,21 @@ static double reach_of(const struct dea_device *device)
   return reach;
 }
 
-/* Any other device: by a table, and as high everywhere as its monitor. */
-static dea_status build_table(struct dea_context *ctx, const char *monitor, struct film_model *m)
+/* Any device that moves by a monitor, and is as high everywhere: by model reduced, or at rest by a
+ * table. */
+static dea_status build_any(struct dea_context *ctx, const char *monitor, bool reduced,
+                            struct film_model *m)
 {
   const struct dea_material *film = film_of(m->device);
-  m->base.name = "3d";
   m->base.material = film != NULL ? film->name : "";
   m->base.frame_radius_m = m->base.fibre_tip_radius_m = reach_of(m->device);
+  if (reduced) {
+    m->by_monitor = true;
+    DEA_TRY(ctx, dea_model_create(ctx, m->type, m->design, m->device, &m->model));
+    DEA_TRY(ctx, dea_film_motion_init(ctx, m->type, m->device, monitor, &m->motion));
+    return DEA_OK;
+  }
+  m->base.name = "3d";
   m->type = &dea_film_table_type;
   return DEA_CHAIN(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->model));
 }
@@ -104,11 +115,13 @@ static dea_status build(struct dea_context *ctx, bool moves, const char *monitor
 {
   DEA_TRY(ctx, dea_device_build(ctx, m->design, &m->device));
   if (monitor != NULL || !m->device->disc) {
-    DEA_TRY(ctx, build_table(ctx, monitor, m));
-    return moves ? dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                                   "the simulated film is at rest at every moment, by a table of "
-                                   "model 3d: it does not creep")
-                 : DEA_OK;
+    const bool reduced = moves && m->type == dea_model_find("reduced");
+    DEA_TRY(ctx, build_any(ctx, monitor, reduced, m));
+    return moves && !reduced
+               ? dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "the simulated film is at rest at every moment, by a table of "
+                                 "model 3d: it does not creep")
+               : DEA_OK;
   }
   struct dea_device *device = m->device;
   if (!moves) { // in a check the film knows neither, and need not say so
@@ -257,6 +270,9 @@ static dea_status begin(struct dea_context *ctx, struct dea_bench_model *model,
   };
   DEA_TRY(ctx, m->type->solve(ctx, m->model, 0, &point));
   DEA_TRY(ctx, dea_model_begin(ctx, m->type, m->model, &options, &point));
+  if (m->by_monitor) {
+    DEA_TRY(ctx, dea_film_motion_read(ctx, &m->motion, m->type, m->model, &point));
+  }
   *out = complete(m, &point);
   return DEA_OK;
 }
@@ -268,6 +284,9 @@ static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model
   const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = source_V};
   struct dea_load_point point;
   dea_status status = dea_model_advance(ctx, m->type, m->model, &step, &point, error);
+  if (status == DEA_OK && m->by_monitor) {
+    status = dea_film_motion_read(ctx, &m->motion, m->type, m->model, &point);
+  }
   if (status == DEA_OK) {
     *out = complete(m, &point);
   }

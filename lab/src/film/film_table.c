@@ -1,7 +1,5 @@
 #include "film/film_table.h"
 
-#include "study/observe.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,8 +9,7 @@ enum { STEPS = 16, POINTS_MAX = 400 }; // up to the design's highest voltage; in
 struct dea_model {
   const struct dea_model_type *type;
   struct dea_model *model; // owned, at the last point, of that type
-  struct dea_monitor_set set;
-  int column; // of the motion; -1: none
+  struct dea_film_motion motion;
   double step_V;
   struct dea_load_point points[POINTS_MAX]; // [count] at multiples of step_V
   size_t count;
@@ -35,11 +32,14 @@ static int first_height(const struct dea_monitor_set *set)
   return -1;
 }
 
-static dea_status find_column(struct dea_context *ctx, const char *monitor, struct dea_model *table)
+dea_status dea_film_motion_init(struct dea_context *ctx, const struct dea_model_type *type,
+                                const struct dea_device *device, const char *monitor,
+                                struct dea_film_motion *out)
 {
-  table->column = monitor != NULL ? dea_column_find(ctx, monitor) : first_height(&table->set);
+  DEA_TRY(ctx, dea_monitor_set_init(ctx, type, device, &out->set));
+  out->column = monitor != NULL ? dea_column_find(ctx, monitor) : first_height(&out->set);
   if (monitor == NULL ||
-      (table->column >= 0 && strcmp(dea_column_at(ctx, table->column)->si_unit, "m") == 0)) {
+      (out->column >= 0 && strcmp(dea_column_at(ctx, out->column)->si_unit, "m") == 0)) {
     return DEA_OK;
   }
   const char *nearest;
@@ -49,13 +49,24 @@ static dea_status find_column(struct dea_context *ctx, const char *monitor, stru
                   nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
 }
 
+dea_status dea_film_motion_read(struct dea_context *ctx, struct dea_film_motion *motion,
+                                const struct dea_model_type *type, struct dea_model *model,
+                                struct dea_load_point *point)
+{
+  DEA_TRY(ctx, dea_monitor_set_read(ctx, &motion->set, type, model, false, point));
+  const double z = motion->column >= 0 ? dea_point_get(point, motion->column) : NAN;
+  point->centre_z_m = point->fibre_tip_z_m = z;
+  point->monitors = NULL; // the set's
+  return DEA_OK;
+}
+
 static void destroy(struct dea_context *ctx, struct dea_model *table)
 {
   if (table != NULL) {
     if (table->model != NULL) {
       table->type->destroy(ctx, table->model);
     }
-    dea_monitor_set_free(&table->set);
+    dea_monitor_set_free(&table->motion.set);
     dea_free(ctx, table);
   }
 }
@@ -71,8 +82,9 @@ dea_status dea_film_table_create(struct dea_context *ctx, const struct dea_desig
   table->type = dea_model_find("3d");
   table->step_V = (highest_V > 0 ? highest_V : 4e3) / STEPS;
   dea_status status = dea_model_create(ctx, table->type, design, device, &table->model);
-  status = status == DEA_OK ? dea_monitor_set_init(ctx, table->type, device, &table->set) : status;
-  status = status == DEA_OK ? find_column(ctx, monitor, table) : status;
+  if (status == DEA_OK) {
+    status = dea_film_motion_init(ctx, table->type, device, monitor, &table->motion);
+  }
   if (status != DEA_OK) {
     destroy(ctx, table);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -90,10 +102,7 @@ static dea_status extend(struct dea_context *ctx, struct dea_model *table)
                     1e-3 * (POINTS_MAX - 1) * table->step_V);
   }
   DEA_TRY(ctx, table->type->solve(ctx, table->model, (double)table->count * table->step_V, point));
-  DEA_TRY(ctx, dea_monitor_set_read(ctx, &table->set, table->type, table->model, false, point));
-  const double z = table->column >= 0 ? dea_point_get(point, table->column) : NAN;
-  point->centre_z_m = point->fibre_tip_z_m = z;
-  point->monitors = NULL; // the set's
+  DEA_TRY(ctx, dea_film_motion_read(ctx, &table->motion, table->type, table->model, point));
   table->count++;
   return DEA_OK;
 }

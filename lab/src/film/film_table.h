@@ -3,6 +3,22 @@
 #pragma once
 
 #include "model/model.h"
+#include "study/observe.h"
+
+/* By what quantity of its monitors a film moves. */
+struct dea_film_motion {
+  struct dea_monitor_set set;
+  int column; // -1: none
+};
+
+/* monitor: as below. Free it with dea_monitor_set_free. */
+dea_status dea_film_motion_init(struct dea_context *ctx, const struct dea_model_type *type,
+                                const struct dea_device *device, const char *monitor,
+                                struct dea_film_motion *out);
+/* Height of centre and fibre tips of a model's last point. */
+dea_status dea_film_motion_read(struct dea_context *ctx, struct dea_film_motion *motion,
+                                const struct dea_model_type *type, struct dea_model *model,
+                                struct dea_load_point *point);
 
 /* A model in time that is at rest at every moment: it has solve, begin, advance and accept. */
 extern const struct dea_model_type dea_film_table_type;

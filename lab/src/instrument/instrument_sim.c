@@ -41,7 +41,7 @@ static const struct dea_field fields[] = {
     DEA_LABEL_ROW("model", AT(model), "lumped", "model of the film; one that knows time",
                   .default_text = "lumped"),
     DEA_LABEL_ROW("monitor", AT(monitor), "hub_z",
-                  "displacement of the device by which the film moves, always at rest",
+                  "displacement of the device by which the film moves",
                   .absent_text = "of a film that is no disc the first monitor's z"),
     DEA_CHOICE_ROW("pace", AT(pace), paces, "real", "as fast as it can, or as slow as a bench",
                    .default_text = "fast"),

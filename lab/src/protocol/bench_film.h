@@ -50,8 +50,8 @@ struct dea_bench_film_type {
 
   /* A model of the film. name: NULL for the one of the checks, which is quick and knows neither
    * fibres nor weight; else one that moves, or DEA_E_UNSUPPORTED. A film that is no disc, or whose
-   * `monitor` is asked for (NULL: the first one's z), is at rest at every moment, by a table of
-   * model 3d, and its centre moves by the monitor. film: lent, outlives the model.
+   * `monitor` is asked for (NULL: the first one's z), moves by that: by model reduced, or, for
+   * other names, at rest at every moment by a table of model 3d. film: lent, outlives the model.
    * out: owned by the caller, NULL on failure. */
   dea_status (*open)(struct dea_context *ctx, const struct dea_bench_film *film, const char *name,
                      const char *monitor, struct dea_bench_model **out);
