@@ -56,60 +56,40 @@ if [ -n "${DEA_FMI_SCHEMA:-}" ]; then
   xmllint --noout --schema "$DEA_FMI_SCHEMA/fmi3ModelDescription.xsd" fmu/modelDescription.xml || exit 1
   xmllint --noout --schema "$DEA_FMI_SCHEMA/fmi3BuildDescription.xsd" fmu/sources/buildDescription.xml || exit 1
 fi
-/usr/bin/python3 - <<'END' || exit 1
-import csv, ctypes as c, glob
-import xml.etree.ElementTree as xml
-root = xml.parse('fmu/modelDescription.xml').getroot()
-reference = {v.get('name'): int(v.get('valueReference')) for v in root.find('ModelVariables')}
-unit = c.CDLL(glob.glob('./fmu/binaries/*-linux/')[0] + root.find('CoSimulation').get('modelIdentifier') + '.so')
-unit.fmi3InstantiateCoSimulation.restype = c.c_void_p
-unit.fmi3GetVersion.restype = c.c_char_p
-assert unit.fmi3GetVersion() == root.get('fmiVersion').encode()
-make = lambda token: unit.fmi3InstantiateCoSimulation(
-    b'cone', token, None, False, False, False, False, None, c.c_size_t(0), None, None, None)
-assert make(b'another device') is None
-one = c.c_void_p(make(root.get('instantiationToken').encode()))
-def call(function, name, value=0.0):
-    at = (c.c_uint32 * 1)(reference[name])
-    values = (c.c_double * 1)(value)
-    return function(one, at, c.c_size_t(1), values, c.c_size_t(1)), values[0]
-def put(name, value):
-    assert call(unit.fmi3SetFloat64, name, value)[0] == 0
-def get(name):
-    status, value = call(unit.fmi3GetFloat64, name)
-    assert status == 0
-    return value
-now, h = 0.0, 5e-5
-def step():
-    flags, last = [c.c_bool() for _ in range(3)], c.c_double()
-    return unit.fmi3DoStep(one, c.c_double(now), c.c_double(h), True, *map(c.byref, flags), c.byref(last))
-assert unit.fmi3EnterInitializationMode(one, False, c.c_double(0), c.c_double(0), False, c.c_double(0)) == 0
-put('series_resistance', 20e6)
-assert unit.fmi3ExitInitializationMode(one) == 0
-assert call(unit.fmi3SetFloat64, 'series_resistance', 1e6)[0] != 0 # fixed by now
+PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 - "$source" <<'END' || exit 1
+import csv, sys
+sys.path.insert(0, sys.argv[1] + '/examples/python')
+from control import Unit
+one, h = Unit('cone.fmu', series_resistance=20e6), 5e-5
+assert one.make('another device') is None
+def refused(function, *arguments, **named):
+    try:
+        function(*arguments, **named)
+    except ValueError:
+        return True
+assert refused(one.put, series_resistance=1e6) # fixed by now
 rows = [[float(r[k]) for k in ('time (s)', 'V (kV)', 'hub z (um)', 'charge (nC)')]
         for r in csv.DictReader(open('reduced/reduced_transient.csv'))]
 worst, sizes = [0.0] * 3, [max(r[k] for r in rows) - min(r[k] for r in rows) for k in (1, 2, 3)]
 for number in range(400):
-    put('voltage', 4000 * min((now + h / 2) / 1e-3, 1))
+    one.put(voltage=4000 * min((one.now + h / 2) / 1e-3, 1))
     if number == 100: # a state that is kept gives the same step again
-        kept = c.c_void_p()
-        assert unit.fmi3GetFMUState(one, c.byref(kept)) == 0 and step() == 0
-        first = get('displacement')
-        assert unit.fmi3SetFMUState(one, kept) == 0 and unit.fmi3FreeFMUState(one, c.byref(kept)) == 0
-    assert step() == 0
-    assert number != 100 or get('displacement') == first
-    now += h
-    own = [1e-3 * get('film_voltage'), 1e6 * get('displacement'), 1e9 * get('charge')]
+        kept = one.keep()
+        one.step(h)
+        first = one.get('displacement')
+        one.restore(kept)
+        one.now -= h
+    one.step(h)
+    assert number != 100 or one.get('displacement') == first
+    V, q, charge = one.get('film_voltage', 'displacement', 'charge')
+    own = [1e-3 * V, 1e6 * q, 1e9 * charge]
     for r in rows:
-        if abs(r[0] - now) < 1e-9:
+        if abs(r[0] - one.now) < 1e-9:
             worst = [max(w, abs(a - b) / size) for w, a, b, size in zip(worst, own, r[1:], sizes)]
 print('FMU beside reduced: voltage %.2g %%, displacement %.2g %%, charge %.2g %%' % tuple(100 * w for w in worst))
 assert 0 < max(worst) < 0.01
-put('voltage', 1e5)
-h = 1.0
-assert step() == 3 # beyond the range
-unit.fmi3FreeInstance(one)
+one.put(voltage=1e5)
+assert refused(one.step, 1.0) # beyond the range
 END
 command -v ngspice >/dev/null || { echo "subcircuit not run: apt-get install ngspice (packages.txt)"; exit 0; }
 { "$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --spice film.cir >out 2>&1 &&

@@ -43,17 +43,19 @@ static const struct variable {
     {"parameter", "series_resistance", "Ohm", NULL, "between source and film"},
     {"parameter", "longest_step", "s", NULL, "longest step of the integration"},
     {"parameter", "damping", "N.s/m", "N.m.s", "dashpot at the coordinate"},
+    {"parameter", "inertia", "1", NULL, "0: without masses"},
     {"output", "displacement", "m", "rad", "coordinate"},
     {"output", "rate", "m/s", "rad/s", "its rate"},
     {"output", "charge", "C", NULL, "charge of the film"},
     {"output", "film_voltage", "V", NULL, "voltage on the film"},
     {"output", "current", "A", NULL, "current of the source"},
 };
-enum { LONGEST_STEP = 4, OUTPUTS = 6, VARIABLES = 11 };
+enum { LONGEST_STEP = 4, INERTIA = 6, OUTPUTS = 7, VARIABLES = 12 };
 
 static const struct {
   const char *name, *base;
 } units[] = {
+    {"1", ""},
     {"s", "s=\"1\""},
     {"V", "kg=\"1\" m=\"2\" s=\"-3\" A=\"-1\""},
     {"Ohm", "kg=\"1\" m=\"2\" s=\"-3\" A=\"-2\""},
@@ -109,7 +111,9 @@ static void describe(struct dea_text *out, const struct dea_reduced_order *o, co
                  v->name, i, v->causality, turns && v->turn != NULL ? v->turn : v->unit);
     if (i > 0 && i < OUTPUTS) {
       dea_text_add(out, "%s start=\"%.17g\"", set ? " variability=\"fixed\"" : "",
-                   i == LONGEST_STEP ? longest_step(&o->core) : 0);
+                   i == LONGEST_STEP ? longest_step(&o->core)
+                   : i == INERTIA    ? o->core.mode_count > 0
+                                     : 0);
     }
     dea_text_add(out, " description=\"%s\"/>\n", v->what);
   }

@@ -12,7 +12,8 @@ enum variable {
   FORCE,
   RESISTANCE,
   LONGEST_STEP,
-  DAMPING, // in; time apart
+  DAMPING,
+  INERTIA, // in; time apart
   DISPLACEMENT,
   RATE,
   CHARGE,
@@ -63,6 +64,7 @@ int fmi3Reset(void *of)
   i->time = i->current_A = 0;
   memset(i->in, 0, sizeof i->in);
   i->in[LONGEST_STEP] = fmi3_longest_step;
+  i->in[INERTIA] = i->device.mode_count > 0;
   return fmi3OK;
 }
 
@@ -125,6 +127,7 @@ int fmi3EnterInitializationMode(void *of, bool has_tolerance, double tolerance, 
 static int begin(struct instance *i)
 {
   i->device.damping = i->in[DAMPING];
+  i->device.mode_count = i->in[INERTIA] > 0 ? dea_reduced_device.mode_count : 0;
   return ended(i, dea_reduced_begin(&i->device, i->in[VOLTAGE], i->in[FORCE], &i->state));
 }
 
