@@ -84,7 +84,7 @@ static const char fibre_disc[] =
  * as far; then they creep. */
 TEST(test_fibre_disc_of_3d)
 {
-  static const char *const sweep[] = {"sweep"};
+  static const char *const sweep[] = {"sweep"}, *const load_line[] = {"load-line"};
   const struct dea_bench_circuit circuit = {0, INFINITY};
   struct dea_bench_film *disc;
   struct dea_bench_model *model;
@@ -114,6 +114,19 @@ TEST(test_fibre_disc_of_3d)
     assert_close(at.point.capacitance_F, p->capacitance_F, 1e-4, 0);
   }
   assert_true(fabs(stroke) > 1e-6);
+  /* Its load line at the highest voltage: the tips push down, the less the lower they are. */
+  assert_int_equal(dea_study_run(ctx, dea_model_find("reduced"), load_line, 1, result), DEA_OK);
+  const struct dea_result_table *forces =
+      dea_result_find_table(result, "reduced", "load-line", "forces");
+  const size_t end = forces->row_count - 1;
+  double below = -1e-12;
+  for (size_t i = 0; i < 200; i++) {
+    const double F = dea_result_table_number(forces, end - i, "force_N", 0);
+    assert_true(i == 0 ? fabs(F) < 1e-9 : F < below);
+    below = F;
+  }
+  assert_close(dea_result_table_number(forces, end, "height_m", 0), last->fibre_tip_z_m, 0,
+               0.01 * fabs(stroke));
   t->close(ctx, model);
   t->destroy(ctx, disc);
   dea_result_destroy(ctx, result);

@@ -281,8 +281,8 @@ struct dea_model_type {
    * model is then as it was. NULL when the model cannot. */
   dea_status (*transfer)(struct dea_context *ctx, struct dea_model *model,
                          const struct dea_model *from, struct dea_load_point *out, bool *found);
-  /* Force [N] out of the plane that holds the fibre tips at a height [m] at a voltage, whatever was
-   * solved last; NULL when the model has no load line. */
+  /* Force [N] out of the plane that fibre tips held at a height [m] push with at a voltage,
+   * whatever was solved last; NULL when the model has no load line. */
   dea_status (*hold)(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
                      double height_m, double *force_N);
   /* The lowest modes of small motions about the last point solved, `at`: copies of it with the keys

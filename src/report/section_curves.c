@@ -59,6 +59,16 @@ static dea_status add_measured(struct dea_report *report, const struct compared 
   return DEA_OK;
 }
 
+/* Whether a bound is to be left out beside what any run predicts. */
+static bool leaves_out(const struct dea_report *report, const struct dea_curve *curve, int column)
+{
+  bool out = false;
+  for (size_t r = 0; r < report->count; r++) {
+    out = out || dea_figure_leaves_out(report->runs[r].run->result, curve, column);
+  }
+  return out;
+}
+
 static dea_status fill(struct dea_report *report, const struct compared *what,
                        struct dea_plot *plot)
 {
@@ -74,10 +84,12 @@ static dea_status fill(struct dea_report *report, const struct compared *what,
       struct dea_series look = dea_figure_style(title, looks);
       look.colour = (enum dea_colour)(looks % 7);
       size_t before = panel->series_count;
-      DEA_TRY(report->ctx,
-              dea_figure_add(report->ctx, panel, dea_figure_curve(result, models[m], false),
-                             dea_column_find(report->ctx, what->key), what->factor, what->shift,
-                             &look));
+      const struct dea_curve *curve = dea_figure_curve(result, models[m], false);
+      const int column = dea_column_find(report->ctx, what->key);
+      if (!leaves_out(report, curve, column)) {
+        DEA_TRY(report->ctx, dea_figure_add(report->ctx, panel, curve, column, what->factor,
+                                            what->shift, &look));
+      }
       looks += panel->series_count > before;
     }
   }
@@ -106,14 +118,15 @@ static void add_last_points(struct dea_report *report)
         continue;
       }
       const struct dea_load_point *p = &curve->points[curve->count - 1];
+      const bool z = !leaves_out(report, curve, dea_point_column_find("fibre_tip_z_m"));
       dea_text_add(out, "<tr><th scope=\"row\">%d ", report->runs[r].number);
       dea_html_text(out, report->runs[r].title);
       dea_text_add(out, "</th>");
       dea_html_element(out, "td", curve->model);
       dea_html_cell(out, 1e-3 * p->voltage_V, 4);
       dea_html_cell(out, 100 * (p->electrode_stretch - 1), 4);
-      dea_html_cell(out, 1e6 * p->centre_z_m, 5);
-      dea_html_cell(out, 1e6 * p->fibre_tip_z_m, 5);
+      dea_html_cell(out, z ? 1e6 * p->centre_z_m : NAN, 5);
+      dea_html_cell(out, z ? 1e6 * p->fibre_tip_z_m : NAN, 5);
       dea_html_cell(out, 100 * p->breakdown_margin, 3);
       char words[DEA_FLAGS_SIZE];
       dea_html_element(out, "td", dea_flags_text(dea_load_point_flags(p), words));

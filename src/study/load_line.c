@@ -1,5 +1,5 @@
-/* Study "load-line": the force that holds the fibre tips at a height, against that height, up to
- * where no force is left, at quarters of the highest voltage. */
+/* Study "load-line": the force that the fibre tips push with where they are held at a height,
+ * against that height, up to where no force is left, at quarters of the highest voltage. */
 #include "study/study.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@ static const struct dea_result_column columns[] = {
     DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the line"),
     DEA_NUMBER_COLUMN("height_m", "m", "um", 1e6, "height", "of the fibre tips"),
     DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force",
-                      "that holds them there: an upper bound, of rigid rods"),
+                      "that they push with there: of model lumped an upper bound, of rigid rods"),
 };
 static const char study_name[] = "load-line";
 static const struct dea_result_table_type force_table =
@@ -27,9 +27,8 @@ static dea_status add_forces(struct dea_context *ctx, const struct dea_model_typ
                              struct dea_result_table *table)
 {
   for (int i = 0; i < LINE_POINTS; i++) {
-    double height_m = free_m * i / (LINE_POINTS - 1), force_N = 0;
-    dea_status status =
-        i > 0 ? dea_model_hold(ctx, type, model, voltage_V, height_m, &force_N) : DEA_OK;
+    double height_m = free_m * i / (LINE_POINTS - 1) + 0.0, force_N = 0;
+    const dea_status status = dea_model_hold(ctx, type, model, voltage_V, height_m, &force_N);
     if (is_fatal(status)) {
       return status;
     }
@@ -39,19 +38,16 @@ static dea_status add_forces(struct dea_context *ctx, const struct dea_model_typ
   return DEA_OK;
 }
 
-/* The line at a voltage, from rest; none where there is no equilibrium or it does not lift. */
+/* The line at a voltage; none where there is no equilibrium or nothing moves. */
 static dea_status add_line(struct dea_context *ctx, const struct dea_model_type *type,
-                           const struct dea_result *result, double voltage_V,
+                           struct dea_model *model, double voltage_V,
                            struct dea_result_table *table)
 {
-  struct dea_model *model;
   struct dea_load_point point;
-  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
   dea_status status = type->solve(ctx, model, voltage_V, &point);
-  if (status == DEA_OK && point.fibre_tip_z_m > 0) {
+  if (status == DEA_OK && point.fibre_tip_z_m != 0) {
     status = add_forces(ctx, type, model, voltage_V, point.fibre_tip_z_m, table);
   }
-  type->destroy(ctx, model);
   if (is_fatal(status)) {
     return status;
   }
@@ -62,14 +58,16 @@ static dea_status add_line(struct dea_context *ctx, const struct dea_model_type 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
-  (void)model; // none: each line starts from rest
   double highest_V = dea_study_highest_V(result);
   struct dea_result_table *table;
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &force_table, type->name, 0, &table));
-  for (int n = 1; n <= LINES && highest_V > 0; n++) {
-    DEA_TRY(ctx, add_line(ctx, type, result, highest_V * n / LINES, table));
+  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model)); // from rest
+  dea_status status = DEA_OK;
+  for (int n = 1; n <= LINES && highest_V > 0 && status == DEA_OK; n++) {
+    status = add_line(ctx, type, model, highest_V * n / LINES, table);
   }
-  return DEA_OK;
+  type->destroy(ctx, model);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 static bool able(const struct dea_model_type *type, const struct dea_result *result)

@@ -402,6 +402,14 @@ TEST(test_studies_of_the_run_or_of_the_page)
   read_page("both.run/report.html");
   assert_null(strstr(page, "<section id=\"map-1\""));
   assert_null(strstr(page, "fibre tip, at most"));
+  // nor beside another run that predicts it
+  assert_int_equal(command_run("report without.run both.run -o beside.html --quiet"), 0);
+  read_page("beside.html");
+  const char *last = strstr(page, "Last point of every sweep");
+  const char *lumped = last != NULL ? strstr(last, "<td>lumped</td><td class=\"n\">4</td>") : NULL;
+  assert_non_null(lumped);
+  const char *z = strstr(lumped, "\342\200\223</td><td class=\"n\">\342\200\223</td>");
+  assert_true(z != NULL && z < strstr(lumped, "</tr>"));
 }
 
 TEST(test_runs_beside_each_other)

@@ -210,6 +210,19 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static dea_status hold(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
+                       double height_m, double *force_N)
+{
+  const struct dea_reduced_order *o = model->order;
+  struct dea_reduced_point at = {0};
+  if (o->coordinate.column != dea_point_column_find("fibre_tip_z_m")) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the model's coordinate is not that of the fibre tips");
+  }
+  const int end = dea_reduced_held(&o->core, height_m, voltage_V, &at);
+  *force_N = -at.force; // on what holds them
+  return end == DEA_REDUCED_OK ? DEA_OK : dea_reduced_fail(ctx, o, end, voltage_V);
+}
+
 /* Of the fit, for its coordinate. */
 static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
 {
@@ -515,6 +528,7 @@ const struct dea_model_type dea_model_reduced = {
     .observe = observe,
     .errors = errors,
     .compliance = compliance,
+    .hold = hold,
     .respond = respond,
     .answers = answers,
     .begin = begin,
