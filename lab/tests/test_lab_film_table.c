@@ -33,6 +33,7 @@ static const char cone[] =
     "compute:\n"
     "  models: [3d]\n"
     "  voltage: {values: [0 kV, 1.1 kV, 3.3 kV, 4 kV]}\n"
+    "  reduced: {voltages: 5}\n"
     "  solid: {film: membrane, order: 1}\n";
 
 static struct dea_bench_film *film;
@@ -78,6 +79,7 @@ static const char fibre_disc[] =
     "compute:\n"
     "  models: [3d]\n"
     "  voltage: {values: [0 kV, 1.7 kV, 2.9 kV, 4 kV]}\n"
+    "  reduced: {voltages: 5}\n"
     "  solid: {order: 1}\n";
 
 /* By model reduced centre and tips are where the sweep of 3d has them, which lumped has 300 times

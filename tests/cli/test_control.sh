@@ -7,7 +7,8 @@ source=$1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-"$DEA_COMMAND" reduce-order "$source/examples/devices/pure-shear.yaml" -s compute.solid.order=1 --fmu strip.fmu >out 2>&1 ||
+"$DEA_COMMAND" reduce-order "$source/examples/devices/pure-shear.yaml" -s compute.solid.order=1 \
+  -s "compute.reduced={monitor: bar, voltages: 5}" --fmu strip.fmu >out 2>&1 ||
   { cat out; exit 1; }
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$source/examples/python /usr/bin/python3 - <<'END'
 import control
