@@ -5,7 +5,7 @@
 #include <math.h>
 
 struct request {
-  const char *design, *output, *c, *fmu, *state_space, *spice;
+  const char *design, *output, *c, *fmu, *state_space, *spice, *mujoco;
   double bias_V, damping;
   struct cli_overrides overrides;
   bool json;
@@ -75,6 +75,10 @@ static dea_status make(struct dea_cli *cli, const void *user, const struct dea_d
     status = dea_reduced_order_write_spice(cli->ctx, order, request->bias_V, request->damping,
                                            request->spice);
   }
+  if (status == DEA_OK && request->mujoco != NULL) {
+    status = dea_reduced_order_write_mujoco(cli->ctx, order, device, request->bias_V,
+                                            request->damping, request->mujoco);
+  }
   if (status == DEA_OK) {
     print_order(request, order, device);
   }
@@ -102,8 +106,10 @@ static const struct cli_option options[] = {
     {"spice", 0, CLI_NEW_FILE, "FILE",
      "write it as a subcircuit dea_film of ngspice: electrodes and displacement, at any voltage",
      CLI_AT(spice)},
+    {"mujoco", 0, CLI_NEW_FILE, "FILE",
+     "write it as a joint with an actuator of MuJoCo (XML), linear about the bias", CLI_AT(mujoco)},
     {"bias", 0, CLI_TEXT, "V",
-     "voltage of the state space, and of --damping, as '3 kV'; 0 if not given", CLI_AT(bias_V),
+     "voltage of state space, actuator and --damping, as '3 kV'; 0 if not given", CLI_AT(bias_V),
      cli_take_quantity, .measure = {"V", "3 kV"}},
     {"damping", 0, CLI_TEXT, "RATIO", "of the critical damping of each mode, as 0.02",
      CLI_AT(damping), cli_take_quantity, .measure = {"1", "0.02"}},

@@ -2,7 +2,8 @@
 # What dea reduce-order writes, in the programs that it is for: the state space in Octave and numpy
 # beside study frequency; the subcircuit in ngspice, behind a resistor, beside study transient of
 # models reduced and 3d, and its small motions beside the state space; the unit of FMI 3.0 in a small
-# importer (DEA_FMI_SCHEMA: folder of the standard's schemas, against which its XML is then checked).
+# importer (DEA_FMI_SCHEMA: folder of the standard's schemas, against which its XML is then checked);
+# the joint of MuJoCo beside the state space.
 # ctest: octave, solid
 set -u
 source=$1
@@ -91,6 +92,45 @@ assert 0 < max(worst) < 0.01
 one.put(voltage=1e5)
 assert refused(one.step, 1.0) # beyond the range
 END
+"$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --bias '3 kV' --damping 0.03 \
+  --mujoco cone.xml >out 2>&1 || { cat out; exit 1; }
+cat >step.c <<'END'
+#include <mujoco/mujoco.h>
+#include <stdio.h>
+int main(void)
+{
+  char error[500] = "";
+  mjModel *m = mj_loadXML("cone.xml", NULL, error, sizeof error);
+  if (m == NULL) {
+    puts(error);
+    return 1;
+  }
+  mjData *d = mj_makeData(m);
+  mj_resetDataKeyframe(m, d, 0);
+  for (int i = 0; i <= 400; i++, d->ctrl[0] = 9.06) { // 3.01 kV
+    printf("%.12g %.12g\n", d->time, d->qpos[0]);
+    mj_step(m, d);
+  }
+  return 0;
+}
+END
+if echo '#include <mujoco/mujoco.h>' | cc -E - >/dev/null 2>&1; then
+  { cc -o step step.c -lmujoco && ./step >mujoco.txt; } || { cat mujoco.txt; exit 1; }
+  /usr/bin/python3 - <<'END' || exit 1
+import json
+import numpy as np
+from scipy.signal import lsim
+s = json.load(open('cone-ss.json'))
+A, B, C, D = (np.array(s[k]) for k in 'ABCD')
+t, q = np.loadtxt('mujoco.txt').T
+own = lsim((A, B[:, :1], C[:1], D[:1, :1]), np.full(len(t), 1e3 * np.sqrt(9.06) - 3e3), t)[1]
+off = np.max(np.abs(q[1:] - q[0] - own[:-1])) / np.ptp(own)
+print(f'MuJoCo beside the state space: {100 * off:.2g} %')
+assert off < 0.03
+END
+else
+  echo "joint of MuJoCo not run: apt-get install libmujoco-dev (packages.txt)"
+fi
 command -v ngspice >/dev/null || { echo "subcircuit not run: apt-get install ngspice (packages.txt)"; exit 0; }
 { "$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --spice film.cir >out 2>&1 &&
   "$DEA_COMMAND" reduce-order "$design" -s compute.reduced.file=cone.json --bias '3 kV' \

@@ -71,6 +71,11 @@ dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,
 dea_status dea_reduced_order_write_spice(struct dea_context *ctx,
                                          const struct dea_reduced_order *order, double voltage_V,
                                          double damping_ratio, const char *path);
+/* As a joint with an actuator of MuJoCo, linear about a voltage. */
+dea_status dea_reduced_order_write_mujoco(struct dea_context *ctx,
+                                          const struct dea_reduced_order *order,
+                                          const struct dea_device *device, double voltage_V,
+                                          double damping_ratio, const char *path);
 void dea_reduced_order_destroy(struct dea_context *ctx, struct dea_reduced_order *order);
 
 /* "hub z", with its unit. */
