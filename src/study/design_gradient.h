@@ -40,13 +40,6 @@ dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *
                               const struct dea_device *device, double voltage_V,
                               struct dea_design_number *out, size_t *count);
 
-/* For those who list numbers: adds one that is not 0, or has a reach, and those of materials, of
- * the plies or of a disc by its short keys. */
-void dea_number_add(const struct dea_design_number *number, struct dea_design_number *out,
-                    size_t *count);
-void dea_numbers_of_materials(const struct dea_device *device, bool plies,
-                              struct dea_design_number *out, size_t *count);
-
 /* A device with another value of one of them. */
 struct dea_changed_device {
   struct dea_device device;

@@ -1,6 +1,7 @@
 #include "study/part_numbers.h"
 
 #include "design/schema_parts.h"
+#include "study/number_rows.h"
 
 #include <math.h>
 #include <stdio.h>
