@@ -246,9 +246,7 @@ static int run(struct dea_cli *cli, void *request)
   check_libraries(&report);
   check_units(&report);
   dea_status status = check_materials(cli->ctx, &report);
-  if (status == DEA_OK) {
-    status = check_examples(cli->ctx, &report);
-  }
+  status = status == DEA_OK ? check_examples(cli->ctx, &report) : status;
   check_gnuplot(&report);
   check_engine(&report);
   check_cairo(&report);

@@ -226,9 +226,7 @@ static dea_status write_cases(const struct work *w)
   const size_t n = w->case_key->variable_count, count = dea_store_count(w->store);
   struct dea_plan plan = {
       .p = dea_alloc(w->ctx, n * count, sizeof(double)), .count = count, .samples = count};
-  if (plan.p == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(plan.p != NULL);
   for (size_t i = 0; i < count; i++) {
     memcpy(plan.p + i * n, dea_store_get(w->store, i)->p, n * sizeof(double));
   }
@@ -533,9 +531,7 @@ static dea_status remove_older(const struct work *w, bool ended)
   for (size_t i = front ? w->report->count + 1 : 1; i <= DEA_EXPLORE_FRONT_MAX + 1; i++) {
     DEA_TRY(w->ctx, remove_written(w, i));
   }
-  if (front || (ended && w->report->count == 0)) {
-    DEA_TRY(w->ctx, remove_written(w, 0));
-  }
+  DEA_TRY(w->ctx, front || (ended && w->report->count == 0) ? remove_written(w, 0) : DEA_OK);
   return front ? DEA_OK : remove_front(w);
 }
 
@@ -560,9 +556,7 @@ static dea_status write_all(struct work *w, bool ended)
   for (size_t i = 0; i < w->report->count; i++) {
     DEA_TRY(w->ctx, write_design(w, &w->report->optima[i], front ? i + 1 : 0));
   }
-  if (front) {
-    DEA_TRY(w->ctx, write_front(w));
-  }
+  DEA_TRY(w->ctx, front ? write_front(w) : DEA_OK);
   return draw_all(w);
 }
 
@@ -573,9 +567,7 @@ static dea_status run(struct work *w)
   DEA_TRY(w->ctx, make_scatter(w));
   w->evaluator = dea_case_key_with_slopes(w->case_key);
   w->report->gradients = w->evaluator.gradients;
-  if (w->options->force) {
-    DEA_TRY(w->ctx, dea_store_remove(w->ctx, w->options->folder));
-  }
+  DEA_TRY(w->ctx, w->options->force ? dea_store_remove(w->ctx, w->options->folder) : DEA_OK);
   DEA_TRY(w->ctx,
           dea_store_open(w->ctx, w->options->folder,
                          w->evaluator.gradients ? w->case_key->hash_slopes : w->case_key->hash,

@@ -262,9 +262,7 @@ static dea_status read_design(struct dea_case_key *case_key)
   const struct dea_explore_file *file = case_key->file;
   struct dea_context *ctx = case_key->ctx;
   case_key->path = dea_path_beside(ctx, file->head.file, file->design.text);
-  if (case_key->path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(case_key->path != NULL);
   dea_status status =
       dea_file_read(ctx, case_key->path, DEA_YAML_SIZE_MAX, &case_key->bytes, &case_key->length);
   if (status == DEA_E_IO) {
@@ -532,9 +530,7 @@ dea_status dea_case_key_read(struct dea_context *ctx, const char *file, struct d
 {
   *out = NULL;
   struct dea_case_key *case_key = dea_alloc(ctx, 1, sizeof *case_key);
-  if (case_key == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(case_key != NULL);
   case_key->ctx = ctx;
   dea_status status = dea_explore_file_read(ctx, file, &case_key->file);
   if (status == DEA_OK) {

@@ -191,9 +191,7 @@ static dea_status run(struct work *w)
 {
   struct dea_context *ctx = w->case_key->ctx;
   const struct dea_sweep_options *options = w->options;
-  if (options->force) {
-    DEA_TRY(ctx, dea_store_remove(ctx, options->folder));
-  }
+  DEA_TRY(ctx, options->force ? dea_store_remove(ctx, options->folder) : DEA_OK);
   DEA_TRY(ctx, dea_store_open(ctx, options->folder, w->case_key->hash, &w->case_key->evaluator,
                               options->merge ? NULL : &options->shard, &w->store));
   dea_status status = options->merge ? DEA_OK : evaluate(w);

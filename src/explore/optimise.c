@@ -458,9 +458,7 @@ static dea_status search_free(struct work *w, const double *extra)
   }
   const size_t draws = search->method == DEA_RANDOM ? search->evaluations : search->starts;
   double *u = dea_alloc(search->ctx, draws * w->n, sizeof *u);
-  if (u == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(u != NULL);
   search->method == DEA_RANDOM ? dea_sample_random(w->n, draws, 1, u)
                                : dea_sample_sobol(w->n, draws, 1, u);
   for (size_t s = extra != NULL ? 0 : 1; s <= draws && w->status == DEA_OK; s++) {
@@ -556,9 +554,7 @@ dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *o
 {
   struct work *w = dea_alloc(search->ctx, 1, sizeof *w);
   *count = 0;
-  if (w == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(w != NULL);
   w->search = search;
   w->bound = INFINITY;
   w->worst = -INFINITY;

@@ -103,9 +103,7 @@ dea_status dea_sample_latin(struct dea_context *ctx, size_t dimensions, size_t c
 {
   uint64_t state = seed;
   size_t *order = dea_alloc(ctx, count, sizeof *order);
-  if (order == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(order != NULL);
   for (size_t d = 0; d < dimensions; d++) {
     for (size_t i = 0; i < count; i++) { // a random order, built up
       const size_t k = (size_t)(mix(&state) % (i + 1));
@@ -238,9 +236,7 @@ dea_status dea_plan_check(const struct dea_case_key *case_key)
                               "%s: a grid needs values, or steps from low to high", name->text));
     }
   }
-  if (file->plan.value == DEA_PLAN_SPARSE) {
-    DEA_TRY(ctx, check_sparse(case_key));
-  }
+  DEA_TRY(ctx, file->plan.value == DEA_PLAN_SPARSE ? check_sparse(case_key) : DEA_OK);
   if (file->correlation_count > 0 &&
       (grid || file->plan.value == DEA_PLAN_SPARSE || file->plan.value == DEA_PLAN_INDICES)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
@@ -265,9 +261,7 @@ static dea_status make_grid(const struct dea_case_key *case_key, struct dea_plan
   }
   out->samples = out->count = (size_t)count;
   out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
-  if (out->p == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(out->p != NULL);
   for (size_t c = 0; c < out->count; c++) {
     size_t rest = c;
     for (size_t j = n; j-- > 0;) { // the last variable changes first
@@ -286,9 +280,7 @@ static dea_status make_sparse(const struct dea_case_key *case_key, struct dea_pl
   out->samples = out->count = dea_sparse_grid(n, level, NULL);
   out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
   out->nodes = dea_alloc(case_key->ctx, out->count * n, 1);
-  if (out->p == NULL || out->nodes == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(out->p != NULL && out->nodes != NULL);
   dea_sparse_grid(n, level, out->nodes);
   for (size_t i = 0; i < out->count * n; i++) {
     out->p[i] = value_at(&case_key->variables[i % n], dea_sparse_grid_share(level, out->nodes[i]));

@@ -155,9 +155,7 @@ void dea_pool_destroy(struct dea_pool *pool)
 /* Sends a case to a process that has none, and starts one where there is none. */
 static dea_status give(struct dea_pool *pool, struct worker *worker)
 {
-  if (worker->process == 0) {
-    DEA_TRY(pool->ctx, start(pool, worker));
-  }
+  DEA_TRY(pool->ctx, worker->process == 0 ? start(pool, worker) : DEA_OK);
   worker->busy = true;
   dea_send_all(worker->socket, &worker->now, sizeof worker->now); // one that is gone is seen later
   return DEA_OK;

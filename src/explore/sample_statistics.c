@@ -11,9 +11,7 @@ dea_status dea_spread_find(struct dea_context *ctx, const double *values, size_t
                            struct dea_spread *out)
 {
   double *sorted = dea_alloc(ctx, count, sizeof *sorted);
-  if (sorted == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(sorted != NULL);
   *out = (struct dea_spread){0, 0, 0, {NAN, NAN, NAN, NAN, NAN}};
   for (size_t i = 0; i < count; i++) {
     if (!isnan(values[i])) {

@@ -44,9 +44,7 @@ static dea_status submit(struct dea_context *ctx, const char *folder, const char
   char said[DEA_PROGRAM_SAID], option[64];
   int number;
   char *script = dea_path_join(ctx, folder, name);
-  if (script == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(script != NULL);
   snprintf(option, sizeof option, "--dependency=afterany:%s", dependency);
   char *const with[] = {(char *)"sbatch", (char *)"--parsable", option, script, NULL};
   char *const without[] = {(char *)"sbatch", (char *)"--parsable", script, NULL};

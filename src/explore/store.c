@@ -62,9 +62,7 @@ static dea_status grow(struct dea_store *store)
       dea_resize(store->ctx, store->cases, capacity, sizeof(struct dea_case *));
   size_t *table = cases != NULL ? dea_alloc(store->ctx, 2 * capacity, sizeof *table) : NULL;
   store->cases = cases != NULL ? cases : store->cases;
-  if (table == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(table != NULL);
   dea_free(store->ctx, store->table);
   store->table = table;
   store->table_size = 2 * capacity;
@@ -78,9 +76,7 @@ static dea_status grow(struct dea_store *store)
 /* Keeps a case that is not there yet. */
 static dea_status remember(struct dea_store *store, const struct dea_case *done)
 {
-  if (store->count == store->capacity) {
-    DEA_TRY(store->ctx, grow(store));
-  }
+  DEA_TRY(store->ctx, store->count == store->capacity ? grow(store) : DEA_OK);
   size_t *place = place_of(store, done->p);
   if (*place != 0) {
     return DEA_OK;
@@ -88,9 +84,7 @@ static dea_status remember(struct dea_store *store, const struct dea_case *done)
   const size_t size =
       offsetof(struct dea_case, q) + dea_evaluator_values(store->evaluator) * sizeof done->q[0];
   struct dea_case *kept = dea_alloc(store->ctx, 1, size);
-  if (kept == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(kept != NULL);
   memcpy(kept, done, size);
   store->cases[store->count++] = kept;
   *place = store->count;
@@ -297,9 +291,7 @@ static dea_status open_part(struct dea_store *store, const char *folder,
   char name[64];
   snprintf(name, sizeof name, "%s%zu-of-%zu.csv", prefix, shard->part, shard->parts);
   store->path = dea_path_join(store->ctx, folder, name);
-  if (store->path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(store->path != NULL);
   store->file = open(store->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (store->file < 0) {
     return dea_fail(store->ctx, DEA_E_IO, "cannot open '%s': %s", store->path, strerror(errno));
@@ -347,9 +339,7 @@ dea_status dea_store_open(struct dea_context *ctx, const char *folder, const cha
 {
   *out = NULL;
   struct dea_store *store = dea_alloc(ctx, 1, sizeof *store);
-  if (store == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(store != NULL);
   *store = (struct dea_store){.ctx = ctx, .evaluator = evaluator, .file = -1};
   snprintf(store->case_key, sizeof store->case_key, "%s", case_key);
   void *before = dea_c_locale_enter();

@@ -123,9 +123,7 @@ dea_status dea_coupon_follow(struct dea_arena *arena, const double *time_s, doub
   s->node_s = dea_arena_alloc(arena, capacity, sizeof *s->node_s);
   s->node_stretch = dea_arena_alloc(arena, capacity, sizeof *s->node_stretch);
   s->node_of_row = dea_arena_alloc(arena, s->rows, sizeof *s->node_of_row);
-  if (arena->failed) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(!arena->failed);
   l = 1;
   s->node_stretch[0] = 1;
   s->node_count = 1;

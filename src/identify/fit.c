@@ -560,9 +560,7 @@ static dea_status fill_curve(struct work *w, const struct dea_fit_series *series
   double *J = dea_arena_alloc(&fit->memory, m * n, sizeof *J);
   DEA_TRY(w->ctx, dea_fit_model_stress(&fit->memory, &fit->model, series, &problem));
   dea_status status = problem.residual(problem.user, fit->least_squares.p, curve->stress_Pa);
-  if (status == DEA_OK) {
-    status = dea_lsq_jacobian(w->ctx, &problem, fit->least_squares.p, J);
-  }
+  status = status == DEA_OK ? dea_lsq_jacobian(w->ctx, &problem, fit->least_squares.p, J) : status;
   if (status == DEA_E_DOMAIN) {
     return dea_fail(w->ctx, status, "'%.60s' goes beyond the domain of the law that was found",
                     series->test->name.text);
@@ -625,9 +623,7 @@ dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
 {
   *out = NULL;
   struct dea_fit *fit = dea_alloc(ctx, 1, sizeof *fit);
-  if (fit == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(fit != NULL);
   *fit = (struct dea_fit){
       .file = file, .series = series, .series_count = series_count, .memory = {.ctx = ctx}};
   struct work w = {.ctx = ctx, .fit = fit};

@@ -440,9 +440,7 @@ dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_m
     DEA_TRY(arena->ctx, dea_coupon_shares_make(arena, &rows->series[s].coupon, model->branch_count,
                                                &shares[s]));
   }
-  if (arena->failed) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(!arena->failed);
   *w = (struct residuals){model, rows, shares, stress};
   set_bounds(model, memory, out);
   out->user = w;
@@ -469,9 +467,7 @@ dea_status dea_fit_model_stress(struct dea_arena *arena, const struct dea_fit_mo
   *out = (struct dea_lsq_problem){.rows = series->rows, .residual = stress_of};
   struct stresses *w = dea_arena_alloc(arena, 1, sizeof *w);
   double *memory = dea_arena_alloc(arena, 3 * DEA_LSQ_PARAMS_MAX, sizeof *memory);
-  if (arena->failed) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(!arena->failed);
   *w = (struct stresses){.model = model, .series = series};
   DEA_TRY(arena->ctx,
           dea_coupon_shares_make(arena, &series->coupon, model->branch_count, &w->shares));
@@ -492,9 +488,7 @@ static dea_status thin(struct dea_arena *arena, const struct dea_fit_rows *rows,
     const size_t every = 1 + whole->rows / THIN_ROWS;
     double *values = dea_arena_alloc(arena, 3 * (whole->rows + 1), sizeof *values);
     size_t *node = dea_arena_alloc(arena, whole->rows + 1, sizeof *node);
-    if (arena->failed) {
-      return DEA_E_MEMORY;
-    }
+    DEA_TRY_MEMORY(!arena->failed);
     *few = *whole;
     few->stretch = values;
     few->stress_Pa = values + whole->rows;

@@ -70,9 +70,7 @@ dea_status dea_lsq_jacobian(struct dea_context *ctx, const struct dea_lsq_proble
 {
   double q[DEA_LSQ_PARAMS_MAX];
   double *work = dea_alloc(ctx, 2 * problem->rows, sizeof *work);
-  if (work == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(work != NULL);
   memcpy(q, p, problem->params * sizeof *q);
   dea_status status = DEA_OK;
   for (size_t j = 0; j < problem->params && status == DEA_OK; j++) {
@@ -193,9 +191,7 @@ static dea_status refresh(struct dea_context *ctx, const struct dea_lsq_problem 
                           struct dea_lsq_fit *fit)
 {
   dea_status status = problem->residual(problem->user, fit->p, fit->r);
-  if (status == DEA_OK) {
-    status = dea_lsq_jacobian(ctx, problem, fit->p, fit->J);
-  }
+  status = status == DEA_OK ? dea_lsq_jacobian(ctx, problem, fit->p, fit->J) : status;
   if (status == DEA_E_DOMAIN) {
     return dea_fail(ctx, status, "the model has no answer at these parameters");
   }

@@ -106,9 +106,7 @@ static dea_status make_rows(struct dea_context *ctx, struct specimen *s)
     n += s->parts[p].rows;
   }
   double *values = dea_alloc(ctx, n > 0 ? n : 1, (DEA_LIFE_CLOCKS + 4) * sizeof *values);
-  if (values == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(values != NULL);
   for (size_t k = 0; k < DEA_LIFE_CLOCKS; k++) {
     s->rows.clock[k] = values + k * n;
   }
@@ -185,9 +183,7 @@ static dea_status read_specimen(struct dea_context *ctx, const struct dea_life_f
                                 const struct dea_life_specimen *own, struct dea_life *out)
 {
   struct specimen *s = dea_alloc(ctx, 1, sizeof *s);
-  if (s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(s != NULL);
   dea_status status = DEA_OK;
   for (size_t p = 0; p < own->reduced_count && status == DEA_OK; p++) {
     status = read_part(ctx, file, own->reduced[p].text, &s->parts[p]);

@@ -307,9 +307,7 @@ static dea_status find(struct dea_context *ctx, struct work *w, bool known,
   for (size_t j = 0; j < n; j++) {
     out->std[j] = out->naive_std[j] = NAN;
   }
-  if (k > 0) {
-    DEA_TRY(ctx, decompose(ctx, w, out->singular));
-  }
+  DEA_TRY(ctx, k > 0 ? decompose(ctx, w, out->singular) : DEA_OK);
   for (size_t g = 0; g < groups; g++) {
     out->lag[g] = find_lag(w, &w->groups[g], lags, S);
   }

@@ -298,9 +298,7 @@ dea_status dea_emulator_at(struct dea_context *ctx, const struct dea_emulator *e
                            double *values, double *errors, unsigned *flags)
 {
   double *w = dea_alloc(ctx, 2 * (e->case_count + e->voltage_count), sizeof *w);
-  if (w == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(w != NULL);
   double *away = w + e->case_count, *scratch = away + e->case_count;
   bool within = true;
   for (size_t j = 0; j < e->key_count; j++) {

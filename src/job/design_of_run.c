@@ -40,9 +40,7 @@ dea_status dea_design_of_run(struct dea_context *ctx, const struct dea_run *run,
   if (status == DEA_OK) {
     status = dea_design_read_memory(ctx, name, input, strlen(input), overrides, count, design);
   }
-  if (status == DEA_OK) {
-    status = dea_device_build(ctx, *design, device);
-  }
+  status = status == DEA_OK ? dea_device_build(ctx, *design, device) : status;
   dea_free(ctx, text);
   return status;
 }

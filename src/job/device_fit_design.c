@@ -285,9 +285,7 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
   size_t count = 0;
   struct changed *changed =
       dea_alloc(ctx, with->count * (1 + DEA_DEVICE_TIES_MAX) + 1, sizeof *changed);
-  if (changed == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(changed != NULL);
   dea_status status = dea_yaml_parse(ctx, file->name, file->bytes, file->length, &document);
   if (status != DEA_OK) {
     dea_free(ctx, changed);

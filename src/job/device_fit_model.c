@@ -288,9 +288,7 @@ static dea_status take_start(struct dea_device_model *model, const double *p)
   if (start->points == NULL) {
     start->points = dea_alloc(ctx, model->stop_count, sizeof *start->points);
   }
-  if (start->states == NULL || start->points == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(start->states != NULL && start->points != NULL);
   drop_states(model, start->states);
   model->states = start->states;
   dea_status status = evaluate(model, p, start->points);

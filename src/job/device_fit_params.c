@@ -138,9 +138,7 @@ static dea_status make_one(struct work *w, const struct dea_fit_parameter_text *
                              out->state);
     }
   }
-  if (names_material(&text.prior)) {
-    DEA_TRY(w->ctx, prior_of_material(w, &text, out));
-  }
+  DEA_TRY(w->ctx, names_material(&text.prior) ? prior_of_material(w, &text, out) : DEA_OK);
   const bool start_given = text.start.text[0] != '\0';
   if (!start_given && isnan(out->designed)) {
     return dea_finding_add(w->ctx, DEA_ERROR, text.name.location,

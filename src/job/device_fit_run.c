@@ -65,14 +65,10 @@ static dea_status read_design(struct work *w)
 {
   const struct dea_device_file *file = w->fit->file;
   w->path = dea_path_beside(w->ctx, file->head.file, file->design.text);
-  if (w->path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(w->path != NULL);
   DEA_TRY(w->ctx, dea_file_read(w->ctx, w->path, DEA_YAML_SIZE_MAX, &w->bytes, &w->length));
   w->fit->design_file = dea_intern(w->ctx, w->path);
-  if (w->fit->design_file == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(w->fit->design_file != NULL);
   dea_sha256_hex(w->bytes, w->length, w->fit->design_sha256);
   DEA_TRY(w->ctx,
           dea_design_read_memory(w->ctx, w->path, w->bytes, w->length, NULL, 0, &w->design));

@@ -54,15 +54,11 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
     return DEA_OK;
   }
   DEA_TRY(ctx, choose_part(ctx, job));
-  if (job->resume) {
-    DEA_TRY(ctx, dea_checkpoint_restore(ctx, working_folder(job), result));
-  }
+  DEA_TRY(ctx, job->resume ? dea_checkpoint_restore(ctx, working_folder(job), result) : DEA_OK);
   job->made = !dea_path_exists(job->folder);
   DEA_TRY(ctx, dea_run_folder_prepare(ctx, job->folder, job->force || job->resume));
   DEA_TRY(ctx, dea_folder_lock(ctx, job->folder, &job->lock));
-  if (job->part != NULL) {
-    DEA_TRY(ctx, dea_run_folder_prepare(ctx, job->part, true));
-  }
+  DEA_TRY(ctx, job->part != NULL ? dea_run_folder_prepare(ctx, job->part, true) : DEA_OK);
   if (job->force) {
     dea_run_folder_clear(ctx, working_folder(job));
   }
@@ -273,7 +269,7 @@ dea_status dea_job_write(struct dea_context *ctx, struct dea_job *job,
   } else if (job->part != NULL && job->status != DEA_E_INTERRUPTED) {
     DEA_TRY(ctx, dea_run_folder_replace(ctx, job->folder, job->part));
   }
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 void dea_job_end(struct dea_context *ctx, struct dea_job *job)

@@ -32,14 +32,10 @@ static char *reason(struct dea_context *ctx)
 static dea_status add_note(struct dea_context *ctx, struct dea_report_run *run, const char *text)
 {
   char **moved = dea_resize(ctx, run->notes, run->note_count + 1, sizeof *moved);
-  if (moved == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(moved != NULL);
   run->notes = moved;
   moved[run->note_count] = dea_copy_text(ctx, text, strlen(text));
-  if (moved[run->note_count] == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(moved[run->note_count] != NULL);
   run->note_count++;
   return DEA_OK;
 }
@@ -50,9 +46,7 @@ static dea_status read_summary(struct dea_context *ctx, struct dea_report_run *o
   *found = false;
   char *path = dea_path_join(ctx, out->path, "summary.json"), *bytes = NULL;
   size_t length;
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = DEA_OK;
   if (dea_path_exists(path) && dea_file_read(ctx, path, SUMMARY_MAX, &bytes, &length) == DEA_OK) {
     json_t *root = json_loadb(bytes, length, 0, NULL);
@@ -76,9 +70,7 @@ static dea_status take_findings(struct dea_context *ctx, struct dea_report_run *
   size_t count;
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = 0; i < count; i++) {
-    if (findings[i].severity != DEA_ERROR) {
-      DEA_TRY(ctx, add_note(ctx, out, findings[i].text));
-    }
+    DEA_TRY(ctx, findings[i].severity != DEA_ERROR ? add_note(ctx, out, findings[i].text) : DEA_OK);
   }
   return DEA_OK;
 }
@@ -105,20 +97,14 @@ static dea_status open_run(struct dea_context *ctx, const char *path, int number
   if (status != DEA_OK) {
     out->missing = reason(ctx);
     dea_context_clear(ctx);
-    if (out->missing == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_TRY_MEMORY(out->missing != NULL);
   } else {
     out->run->result->design = out->design;
     out->run->result->device = out->device;
   }
   bool found = false;
-  if (dea_path_is_folder(path)) {
-    DEA_TRY(ctx, read_summary(ctx, out, &found));
-  }
-  if (!found) {
-    DEA_TRY(ctx, take_findings(ctx, out));
-  }
+  DEA_TRY(ctx, dea_path_is_folder(path) ? read_summary(ctx, out, &found) : DEA_OK);
+  DEA_TRY(ctx, !found ? take_findings(ctx, out) : DEA_OK);
   dea_finding_clear(ctx); // they stand in the page
   return DEA_OK;
 }
@@ -222,10 +208,8 @@ dea_status dea_job_report(struct dea_context *ctx, const char *const runs[], siz
   if (status == DEA_OK && options->explorer != NULL) {
     status = dea_report_runs_explore(ctx, options->explorer, opened, count, &emulator);
   }
-  if (status == DEA_OK) {
-    status = dea_report_write(ctx, opened, count, options, path);
-  }
+  status = status == DEA_OK ? dea_report_write(ctx, opened, count, options, path) : status;
   dea_free(ctx, emulator);
   dea_report_runs_close(ctx, opened, count);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -29,9 +29,7 @@ static dea_status refuse_link(struct dea_context *ctx, const char *directory, co
 {
   struct stat info;
   char *path = dea_path_join(ctx, directory, name);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(path != NULL);
   bool link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
   dea_free(ctx, path);
   return !link ? DEA_OK
@@ -184,9 +182,7 @@ static dea_status write_figures(struct dea_context *ctx, const struct dea_result
     options.format.width_m = width_m > 0.0 ? width_m : options.format.width_m;
   }
   char *folder = dea_path_join(ctx, directory, DEA_FIGURE_FOLDER);
-  if (folder == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(folder != NULL);
   dea_status status = dea_figures_write(ctx, result, folder, &options, NULL);
   dea_free(ctx, folder);
   return status;
@@ -207,8 +203,5 @@ dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result
     DEA_TRY(ctx, exports[i]->write(ctx, result, directory));
   }
   DEA_TRY(ctx, dea_checkpoint_shapes(ctx, result, directory));
-  if (!o->no_figures) {
-    DEA_TRY(ctx, write_figures(ctx, result, directory));
-  }
-  return DEA_OK;
+  return DEA_CHAIN(ctx, !o->no_figures ? write_figures(ctx, result, directory) : DEA_OK);
 }

@@ -106,9 +106,7 @@ static dea_status finish(struct dea_path *path, const double *along_u, double al
   double scale = path->system.voltage_scale_V, right[ROWS_MAX] = {0};
   right[n] = 1;
   dea_status status = evaluate(path, at->u, at->voltage_V);
-  if (status == DEA_OK) {
-    status = solve_bordered(path, along_u, along_V / scale, right);
-  }
+  status = status == DEA_OK ? solve_bordered(path, along_u, along_V / scale, right) : status;
   if (status != DEA_OK) {
     return status;
   }
@@ -204,9 +202,7 @@ static dea_status locate(struct dea_path *path, const struct dea_path_state *fro
     double s = i % 4 == 3 ? 0.5 * (s0 + s1) : s0 - f0 * (s1 - s0) / (f1 - f0);
     int iterations;
     dea_status status = step(path, from, s, state, &iterations);
-    if (status == DEA_OK) {
-      status = state_point(path, state, point);
-    }
+    status = status == DEA_OK ? state_point(path, state, point) : status;
     if (status != DEA_OK) {
       return status;
     }
@@ -268,9 +264,7 @@ static dea_status find_rest(struct dea_path *path)
   struct dea_path_state origin = path->rest, at = path->rest;
   int iterations;
   dea_status status = correct(path, &origin, nowhere, 1, 0, &at, &iterations);
-  if (status == DEA_OK) {
-    status = finish(path, nowhere, path->system.voltage_scale_V, &at);
-  }
+  status = status == DEA_OK ? finish(path, nowhere, path->system.voltage_scale_V, &at) : status;
   if (status == DEA_OK) {
     path->rest = at;
   }
@@ -310,9 +304,7 @@ dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system
                     DEA_PATH_UNKNOWNS_MAX, system->unknowns);
   }
   struct dea_path *path = dea_alloc(ctx, 1, sizeof *path);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(path != NULL);
   path->ctx = ctx;
   path->system = *system;
   memcpy(path->rest.u, start, system->unknowns * sizeof *start);
@@ -675,6 +667,5 @@ dea_status dea_path_trace(struct dea_context *ctx, struct dea_path *path,
 dea_status dea_path_point(struct dea_context *ctx, struct dea_path *path,
                           struct dea_load_point *out)
 {
-  DEA_TRY(ctx, state_point(path, &path->state, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, state_point(path, &path->state, out));
 }

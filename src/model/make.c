@@ -10,9 +10,7 @@ dea_status dea_model_make(
   static const struct dea_model_settings usual = {0};
   *out = NULL;
   struct dea_model *model = dea_alloc(ctx, 1, size);
-  if (model == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(model != NULL);
   dea_status status = prepare(ctx, device, settings != NULL ? settings : &usual, model);
   if (status != DEA_OK) {
     destroy(ctx, model);

@@ -54,10 +54,7 @@ dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type 
     DEA_TRY(ctx, dea_device_require_disc(ctx, device));
     DEA_TRY(ctx, dea_film_create(ctx, device, &film));
   }
-  if (type->check != NULL) {
-    DEA_TRY(ctx, type->check(ctx, design, device));
-  }
-  return DEA_OK;
+  return DEA_CHAIN(ctx, type->check != NULL ? type->check(ctx, design, device) : DEA_OK);
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_model_type *type,
@@ -65,8 +62,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_model_type *t
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
   DEA_TRY(ctx, dea_model_check(ctx, type, design, device));
-  DEA_TRY(ctx, type->create(ctx, device, settings, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, type->create(ctx, device, settings, out));
 }
 
 dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,
@@ -192,9 +188,8 @@ dea_status dea_model_gradient(struct dea_context *ctx, const struct dea_model_ty
                               struct dea_model *model, const struct dea_model_settings *settings,
                               const struct dea_gradient_ask *ask, double *out)
 {
-  DEA_TRY(ctx, type->gradient != NULL ? type->gradient(ctx, model, ask, out)
-                                      : difference(ctx, type, settings, ask, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, type->gradient != NULL ? type->gradient(ctx, model, ask, out)
+                                               : difference(ctx, type, settings, ask, out));
 }
 
 dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_type *type,

@@ -128,6 +128,5 @@ dea_status dea_solid_check_design(struct dea_context *ctx, const struct dea_desi
   for (size_t i = 0; l != NULL && i < l->ply_count; i++) {
     DEA_TRY(ctx, dea_solid_check_ply(ctx, l, i));
   }
-  DEA_TRY(ctx, check_weight(ctx, design, device));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, check_weight(ctx, design, device));
 }

@@ -95,9 +95,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   const struct dea_model_type *type = NULL;
   DEA_TRY(ctx, open_module(ctx, &type));
   struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
-  if (model == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(model != NULL);
   model->type = type;
   struct dea_model_settings own = settings != NULL ? *settings : (struct dea_model_settings){0};
   own.mesh_from = own.mesh_from != NULL ? own.mesh_from->inner : NULL;
@@ -115,8 +113,7 @@ static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
 {
   const struct dea_model_type *type = NULL;
   DEA_TRY(ctx, open_module(ctx, &type));
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(type->libraries(ctx, out, size)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(type->libraries(ctx, out, size)));
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
@@ -132,85 +129,75 @@ static const struct dea_event *passed(const struct dea_model *model)
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(model->type->solve(ctx, model->inner, voltage_V, out)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->solve(ctx, model->inner, voltage_V, out)));
 }
 
 static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                          const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
 {
-  DEA_TRY(ctx,
-          DEA_SOLID_IN_TURN(dea_model_indent(ctx, model->type, model->inner, probe, depth_m, out)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(
+                            dea_model_indent(ctx, model->type, model->inner, probe, depth_m, out)));
 }
 
 static dea_status move(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_control *control, double value, struct dea_load_point *out)
 {
-  DEA_TRY(ctx,
-          DEA_SOLID_IN_TURN(dea_model_move(ctx, model->type, model->inner, control, value, out)));
-  return DEA_OK;
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(dea_model_move(ctx, model->type, model->inner, control, value, out)));
 }
 
 static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
                              const struct dea_control *coordinate, int with,
                              struct dea_compliance *out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
-                   dea_model_compliance(ctx, model->type, model->inner, coordinate, with, out)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_compliance(ctx, model->type, model->inner,
+                                                               coordinate, with, out)));
 }
 
 static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
                             const struct dea_path_options *options, dea_point_sink points,
                             dea_event_sink events, void *user)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
-                   dea_model_path(ctx, model->type, model->inner, options, points, events, user)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_path(ctx, model->type, model->inner, options,
+                                                         points, events, user)));
 }
 
 static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
                          double *stiffness_N_per_m4)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
-                   dea_model_soften(ctx, model->type, model->inner, count, stiffness_N_per_m4)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_soften(ctx, model->type, model->inner, count,
+                                                           stiffness_N_per_m4)));
 }
 
 static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
                        struct dea_load_point *out, bool *found)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_push(ctx, model->type, model->inner, way, out, found)));
-  return DEA_OK;
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(dea_model_push(ctx, model->type, model->inner, way, out, found)));
 }
 
 static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
                            const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
-                   dea_model_transfer(ctx, model->type, model->inner, from->inner, out, found)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_transfer(ctx, model->type, model->inner,
+                                                             from->inner, out, found)));
 }
 
 static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
                            const struct dea_gradient_ask *ask, double *out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(model->type->gradient(ctx, model->inner, ask, out)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->gradient(ctx, model->inner, ask, out)));
 }
 
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_observe(ctx, model->type, model->inner, out)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_observe(ctx, model->type, model->inner, out)));
 }
 
 static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(model->type->errors(ctx, model->inner, error)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->errors(ctx, model->inner, error)));
 }
 
 static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t *count)
@@ -220,17 +207,15 @@ static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t
 
 static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_profile(ctx, model->type, model->inner, out)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_profile(ctx, model->type, model->inner, out)));
 }
 
 static dea_status modes(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_load_point *at, size_t count,
                         struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
-                   dea_model_modes(ctx, model->type, model->inner, at, count, points, shapes)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_modes(ctx, model->type, model->inner, at, count,
+                                                          points, shapes)));
 }
 
 static dea_status respond(struct dea_context *ctx, struct dea_model *model,
@@ -238,9 +223,9 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_ac_excitation *excitation, const double *frequency_Hz,
                           size_t count, struct dea_load_point *points)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_respond(ctx, model->type, model->inner, at, excitation,
-                                                   frequency_Hz, count, points)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx,
+                   DEA_SOLID_IN_TURN(dea_model_respond(ctx, model->type, model->inner, at,
+                                                       excitation, frequency_Hz, count, points)));
 }
 
 static const double *answers(const struct dea_model *model)
@@ -251,37 +236,34 @@ static const double *answers(const struct dea_model *model)
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_fields(ctx, model->type, model->inner, part, out)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx,
+                   DEA_SOLID_IN_TURN(dea_model_fields(ctx, model->type, model->inner, part, out)));
 }
 
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_save(ctx, model->type, model->inner, out)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_save(ctx, model->type, model->inner, out)));
 }
 
 static dea_status load(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_state *state)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_load(ctx, model->type, model->inner, state)));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_load(ctx, model->type, model->inner, state)));
 }
 
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *options, struct dea_load_point *out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_begin(ctx, model->type, model->inner, options, out)));
-  return DEA_OK;
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(dea_model_begin(ctx, model->type, model->inner, options, out)));
 }
 
 static dea_status advance(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_time_step *step, struct dea_load_point *out,
                           double *error)
 {
-  DEA_TRY(ctx,
-          DEA_SOLID_IN_TURN(dea_model_advance(ctx, model->type, model->inner, step, out, error)));
-  return DEA_OK;
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(dea_model_advance(ctx, model->type, model->inner, step, out, error)));
 }
 
 static void accept(struct dea_model *model)

@@ -191,9 +191,7 @@ dea_status dea_column_add(struct dea_context *ctx, const struct dea_column *colu
   *out = dea_column_count(ctx);
   struct registry *registry = get_registry(ctx);
   struct dea_column *kept = registry != NULL ? dea_alloc(ctx, 1, sizeof *kept) : NULL;
-  if (kept == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(kept != NULL);
   *kept = (struct dea_column){
       .key = dea_intern(ctx, column->key),
       .si_unit = dea_intern(ctx, column->si_unit),

@@ -7,9 +7,7 @@ dea_status dea_field_mesh_create(struct dea_context *ctx, size_t point_count,
 {
   *out = NULL;
   struct dea_field_mesh *mesh = dea_alloc(ctx, 1, sizeof *mesh);
-  if (mesh == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(mesh != NULL);
   mesh->point_count = point_count;
   mesh->X = dea_alloc(ctx, point_count, 3 * sizeof *mesh->X);
   if (mesh->X == NULL) {
@@ -61,9 +59,7 @@ dea_status dea_field_mesh_add_block(struct dea_context *ctx, struct dea_field_me
     return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh of fields takes no such block");
   }
   *nodes = dea_alloc(ctx, count * (size_t)dea_mesh_block_nodes(&block), sizeof **nodes);
-  if (*nodes == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(*nodes != NULL);
   mesh->blocks[mesh->block_count] = block;
   mesh->blocks[mesh->block_count++].nodes = *nodes;
   mesh->cell_count += count;
@@ -85,9 +81,7 @@ dea_status dea_field_mesh_add(struct dea_context *ctx, struct dea_field_mesh *me
   }
   *values = dea_alloc(ctx, dea_mesh_field_count(mesh, field) * (size_t)field->components,
                       sizeof **values);
-  if (*values == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(*values != NULL);
   mesh->fields[mesh->field_count] = *field;
   mesh->fields[mesh->field_count++].values = *values;
   return DEA_OK;

@@ -12,9 +12,7 @@ dea_status dea_result_create(struct dea_context *ctx, const struct dea_design *d
                              const struct dea_device *device, struct dea_result **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(*out != NULL);
   (*out)->design = design;
   (*out)->device = device;
   (*out)->surface_bytes_max = surface_bytes;
@@ -84,9 +82,7 @@ dea_status dea_result_add_curve(struct dea_context *ctx, struct dea_result *resu
   }
   struct dea_curve *curves =
       dea_resize(ctx, result->curves, result->curve_count + 1, sizeof *curves);
-  if (curves == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(curves != NULL);
   result->curves = curves;
   *out = &curves[result->curve_count++];
   **out = curve;
@@ -176,9 +172,7 @@ static dea_status make_room(struct dea_context *ctx, void **items, size_t count,
   }
   size_t wanted = *capacity > 0 ? 2 * *capacity : 16;
   void *moved = dea_resize(ctx, *items, wanted, size);
-  if (moved == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(moved != NULL);
   *items = moved;
   *capacity = wanted;
   return DEA_OK;
@@ -272,9 +266,7 @@ static dea_status copy_profile(struct dea_context *ctx, const char *model, doubl
   *out = (struct dea_profile_record){.voltage_V = voltage_V, .count = profile->count};
   DEA_TRY(ctx, name_set(ctx, "model", model, out->model));
   out->columns = dea_alloc(ctx, DEA_PROFILE_COLUMNS * profile->count, sizeof(double));
-  if (out->columns == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(out->columns != NULL);
   for (size_t c = 0; c < DEA_PROFILE_COLUMNS && profile->count > 0; c++) {
     memcpy(out->columns + c * profile->count, columns[c], profile->count * sizeof(double));
   }
@@ -309,9 +301,7 @@ dea_status dea_result_add_variant(struct dea_context *ctx, struct dea_result *re
   DEA_TRY(ctx, name_set(ctx, "variant", name, variant.name));
   struct dea_variant *variants =
       dea_resize(ctx, result->variants, result->variant_count + 1, sizeof *variants);
-  if (variants == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(variants != NULL);
   result->variants = variants;
   *out = &variants[result->variant_count++];
   **out = variant;

@@ -56,9 +56,7 @@ dea_status dea_state_copy_values(struct dea_context *ctx, const struct dea_state
   for (size_t i = 0; i < state->array_count; i++) {
     const struct dea_state_array *from = &state->arrays[i];
     double *values = dea_alloc(ctx, from->count, sizeof *values);
-    if (values == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_TRY_MEMORY(values != NULL);
     memcpy(values, from->values, from->count * sizeof *values);
     out->arrays[out->array_count++] = (struct dea_state_array){from->name, from->count, values};
   }

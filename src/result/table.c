@@ -51,9 +51,7 @@ dea_status dea_result_table_init(struct dea_context *ctx, const struct dea_resul
   }
   const size_t bytes = type->column_count * sizeof *type->columns;
   out->own_columns = dea_alloc(ctx, 1, bytes);
-  if (out->own_columns == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(out->own_columns != NULL);
   out->type.columns = memcpy(out->own_columns, type->columns, bytes);
   snprintf(out->model, sizeof out->model, "%s", model);
   out->stride = column_offset(out, type->column_count);
@@ -85,9 +83,7 @@ static dea_status make_room(struct dea_context *ctx, struct dea_result_table *ta
   }
   size_t capacity = table->capacity > 0 ? 2 * table->capacity : 8;
   struct dea_cell *cells = dea_resize(ctx, table->cells, capacity * table->stride, sizeof *cells);
-  if (cells == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(cells != NULL);
   table->cells = cells;
   table->capacity = capacity;
   return DEA_OK;
@@ -110,9 +106,7 @@ dea_status dea_result_table_add_row(struct dea_context *ctx, struct dea_result_t
     if (column->kind == DEA_CELL_TEXT) {
       const char *text = values[c].text != NULL ? values[c].text : "";
       row[at - 1].text = dea_copy_text(ctx, text, strlen(text));
-      if (row[at - 1].text == NULL) {
-        return DEA_E_MEMORY;
-      }
+      DEA_TRY_MEMORY(row[at - 1].text != NULL);
     }
   }
   return DEA_OK;

@@ -82,9 +82,7 @@ dea_status dea_time_series_cycles(struct dea_context *ctx, const struct dea_curv
     return DEA_OK;
   }
   *cycles = dea_alloc(ctx, total, sizeof **cycles);
-  if (*cycles == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(*cycles != NULL);
   for (; *count < total; ++*count) {
     dea_waveform_cycle(waveform, *count, &wave);
     while (from + 1 < curve->count && is_before(curve->points[from].time_s, wave.start_s)) {

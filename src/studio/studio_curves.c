@@ -107,13 +107,11 @@ dea_status dea_studio_show(struct dea_context *ctx, const char *folder, const js
   for (size_t i = 0; i < count && status == DEA_OK; i++) { // they are known by their folders here
     snprintf(runs[i].title, sizeof runs[i].title, "%s", dea_path_name(paths[i]));
   }
-  if (status == DEA_OK) {
-    status = draw(ctx, runs, count, paths[count], view, out);
-  }
+  status = status == DEA_OK ? draw(ctx, runs, count, paths[count], view, out) : status;
   dea_free(ctx, emulator);
   dea_report_runs_close(ctx, runs, count <= DEA_STUDIO_RUNS_MAX ? count : 0);
   for (size_t i = 0; i <= DEA_STUDIO_RUNS_MAX; i++) {
     dea_free(ctx, paths[i]);
   }
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -396,9 +396,7 @@ dea_status dea_studio_start(struct dea_context *ctx, const struct dea_studio_opt
 {
   struct dea_studio *studio = dea_alloc(ctx, 1, sizeof *studio);
   *out = NULL;
-  if (studio == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(studio != NULL);
   *studio = (struct dea_studio){.ctx = ctx, .options = *options, .room = {.folder = -1}};
   pthread_mutex_init(&studio->room.write_lock, NULL);
   pthread_mutex_init(&studio->room.results_lock, NULL);

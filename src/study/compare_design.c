@@ -400,10 +400,8 @@ static dea_status build_designs(struct dea_context *ctx, const struct dea_result
   }
   last->dashed = last == panels || panels[0].dashed == NULL ? last->dashed : NULL; // said above
   panels[0].x_max = last->x_max; // all designs have a strain, and the panels share the axis
-  if (panels[0].series_count > 0) {
-    DEA_TRY(ctx, add_key(ctx, &panels[0], list, count, false));
-  }
-  return DEA_OK;
+  return DEA_CHAIN(ctx, panels[0].series_count > 0 ? add_key(ctx, &panels[0], list, count, false)
+                                                   : DEA_OK);
 }
 
 /* What models predict, and in a panel of its own, since it is many times as large, what they know
@@ -474,9 +472,7 @@ static dea_status build_design_profiles(struct dea_context *ctx, const struct de
   struct dea_panel *last = &plot->panels[plot->panel_count - 1];
   for (size_t i = 0; i < count; i++) {
     const struct dea_profile profile = dea_profile_of_record(&list[i].variant->profile);
-    if (z) {
-      DEA_TRY(ctx, add(ctx, &plot->panels[0], &list[i], profile.z_m));
-    }
+    DEA_TRY(ctx, z ? add(ctx, &plot->panels[0], &list[i], profile.z_m) : DEA_OK);
     DEA_TRY(ctx, add(ctx, last, &list[i], profile.displacement_m));
   }
   for (size_t i = 0; i < count; i++) {
@@ -489,10 +485,7 @@ static dea_status build_design_profiles(struct dea_context *ctx, const struct de
              "Radius in the stretched flat film {/:Italic R} (mm)");
     dea_panel_even_tics(&plot->panels[p], 7);
   }
-  if (count > 0) {
-    DEA_TRY(ctx, add_key(ctx, &plot->panels[0], list, count, true));
-  }
-  return DEA_OK;
+  return DEA_CHAIN(ctx, count > 0 ? add_key(ctx, &plot->panels[0], list, count, true) : DEA_OK);
 }
 
 static const struct dea_figure figures[] = {

@@ -524,7 +524,7 @@ static dea_status slopes_of_crossing(struct dea_context *ctx, const struct dea_c
     memcpy(slopes, out, count * sizeof *slopes);
   }
   dea_arena_free(&memory);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* Of a limit point, which is the model's own; none where it is another instability. */

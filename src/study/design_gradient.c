@@ -169,8 +169,7 @@ static dea_status change(struct dea_context *ctx, const struct dea_design *desig
 {
   double kept = number->scale * value;
   if (design->parts != NULL) {
-    DEA_TRY(ctx, dea_part_change(ctx, design, number, value, memory, out));
-    return DEA_OK;
+    return DEA_CHAIN(ctx, dea_part_change(ctx, design, number, value, memory, out));
   }
   *out = *device;
   out->layout = NULL; // it would be another one
@@ -264,8 +263,7 @@ static dea_status begin_changes(struct dea_context *ctx, const struct dea_design
   all->scratch = dea_arena_alloc(&all->memory, 1, sizeof *all->scratch);
   all->changes = dea_arena_alloc(&all->memory, ask->number_count, sizeof *all->changes);
   DEA_TRY(ctx, dea_arena_status(&all->memory));
-  DEA_TRY(ctx, make_changes(ctx, ask, all));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, make_changes(ctx, ask, all));
 }
 
 static void free_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
@@ -297,7 +295,7 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
     status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
   }
   free_changes(ctx, ask, &all);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_design_gradient_critical(struct dea_context *ctx,
@@ -313,5 +311,5 @@ dea_status dea_design_gradient_critical(struct dea_context *ctx,
     slopes[i] = strcmp(ask->numbers[i].key, "voltage") == 0 ? NAN : slopes[i];
   }
   free_changes(ctx, ask, &all);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -36,9 +36,7 @@ static dea_status unknown_part(struct dea_context *ctx,
   struct dea_design_number *numbers = dea_alloc(ctx, DEA_NUMBERS_MAX, sizeof *numbers);
   const char *known[DEA_NUMBERS_MAX];
   size_t count = 0;
-  if (numbers == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(numbers != NULL);
   dea_status status = dea_part_numbers(ctx, source->design, source->device, false, numbers, &count);
   for (size_t i = 0; i < count; i++) {
     known[i] = numbers[i].key;
@@ -155,9 +153,7 @@ static dea_status from_part(struct dea_context *ctx, const struct dea_device_par
 {
   struct dea_design_number *numbers = dea_alloc(ctx, DEA_NUMBERS_MAX, sizeof *numbers);
   size_t count = 0;
-  if (numbers == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(numbers != NULL);
   dea_status status = dea_part_numbers(ctx, source->design, source->device, true, numbers, &count);
   *good = false;
   for (size_t i = 0; i < count && status == DEA_OK && !*good; i++) {
@@ -372,6 +368,5 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
       dea_device_param_put(one, p[j], dea_material_at(*device, one->material));
     }
   }
-  DEA_TRY(ctx, (*design)->parts != NULL ? dea_device_find_disc(ctx, *device) : DEA_OK);
-  return DEA_OK;
+  return DEA_CHAIN(ctx, (*design)->parts != NULL ? dea_device_find_disc(ctx, *device) : DEA_OK);
 }

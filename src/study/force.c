@@ -159,12 +159,11 @@ dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type
   const struct dea_probe tip = dea_force_indenter(design);
   struct dea_load_point point;
   if (stop < depths) {
-    DEA_TRY(ctx, dea_model_indent(ctx, type, model, &tip, force->depths_m[stop].si, &point));
-    return DEA_OK;
+    return DEA_CHAIN(ctx,
+                     dea_model_indent(ctx, type, model, &tip, force->depths_m[stop].si, &point));
   }
-  DEA_TRY(ctx,
-          find_preload(ctx, type, model, &tip, force->preloads_N[stop - depths].si, tip.radius_m));
-  return DEA_OK;
+  return DEA_CHAIN(
+      ctx, find_preload(ctx, type, model, &tip, force->preloads_N[stop - depths].si, tip.radius_m));
 }
 
 /* What is interpolated at most; bands are of small differences of lines. */
@@ -497,9 +496,7 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
     snprintf(look.title, sizeof look.title, "%.4g mm", 1e3 * part.points[0].tip_depth_m);
     DEA_TRY(ctx, dea_figure_add(ctx, panel, &part, column, dea_point_columns[column].factor, 0.0,
                                 &look));
-    if (!all) {
-      DEA_TRY(ctx, add_computed(ctx, panel, &part, &look));
-    }
+    DEA_TRY(ctx, !all ? add_computed(ctx, panel, &part, &look) : DEA_OK);
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Force on the tip {/:Italic F} (mN)");
   dea_panel_voltage_axis(panel);

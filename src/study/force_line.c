@@ -177,9 +177,7 @@ static dea_status go(struct way *way)
 {
   char why[256];
   dea_status status = go_up(way, &way->done);
-  if (status == DEA_OK) {
-    status = go_on(way, way->done);
-  }
+  status = status == DEA_OK ? go_on(way, way->done) : status;
   if (status != DEA_OK && dea_verdict_of(status)[0] == '\0') {
     return status;
   }

@@ -185,9 +185,7 @@ static dea_status line_create(struct dea_context *ctx, size_t count, struct line
 {
   double *memory = dea_alloc(ctx, 3 * count, sizeof *memory);
   *out = (struct line){.count = count, .frequency_Hz = memory};
-  if (memory == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(memory != NULL);
   out->amplitude_m = memory + count;
   out->phase_rad = memory + 2 * count;
   return DEA_OK;

@@ -192,5 +192,5 @@ dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_model_
     }
   }
   dea_free(ctx, f);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -67,7 +67,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     status = add_line(ctx, type, model, highest_V * n / LINES, table);
   }
   type->destroy(ctx, model);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 static bool able(const struct dea_model_type *type, const struct dea_result *result)

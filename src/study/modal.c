@@ -78,9 +78,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, true, voltages_V);
-  DEA_TRY(ctx,
-          dea_study_stop_by_stop(ctx, type, result, study_name, true, voltages_V, count, take));
-  return DEA_OK;
+  return DEA_CHAIN(
+      ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, voltages_V, count, take));
 }
 
 // Table ------------------------------------------------------------------------------------------

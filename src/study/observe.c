@@ -76,9 +76,7 @@ dea_status dea_monitor_set_read(struct dea_context *ctx, struct dea_monitor_set 
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
-  if (errors && type->errors != NULL) {
-    DEA_TRY(ctx, type->errors(ctx, model, set->errors));
-  }
+  DEA_TRY(ctx, errors && type->errors != NULL ? type->errors(ctx, model, set->errors) : DEA_OK);
   point->monitors = set->values;
   for (size_t i = 0; i < set->count; i++) {
     const struct dea_monitor_column *c = &set->columns[i];

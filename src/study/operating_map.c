@@ -196,9 +196,7 @@ static dea_status make_plan(struct dea_context *ctx, const struct dea_design *de
   const struct settings *settings = dea_design_settings(design, &section)->values;
   struct numbers *numbers = dea_alloc(ctx, 1, sizeof *numbers);
   *out = (struct plan){.column = -1};
-  if (numbers == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(numbers != NULL);
   dea_status status = dea_design_numbers(ctx, design, device, dea_design_highest_V(design),
                                          numbers->at, &numbers->count);
   for (size_t i = 0; i < settings->parameter_count && status == DEA_OK; i++) {
@@ -209,16 +207,14 @@ static dea_status make_plan(struct dea_context *ctx, const struct dea_design *de
   }
   dea_free(ctx, numbers);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, find_quantity(ctx, device, &settings->quantity, &out->column));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, find_quantity(ctx, device, &settings->quantity, &out->column));
 }
 
 static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
                          const struct dea_device *device)
 {
   struct plan plan;
-  DEA_TRY(ctx, make_plan(ctx, design, device, &plan));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, make_plan(ctx, design, device, &plan));
 }
 
 // Tables -----------------------------------------------------------------------------------------
@@ -504,9 +500,7 @@ static dea_status add_axis(struct dea_context *ctx, const struct axis *axis, siz
   const struct dea_result_table_type type =
       DEA_RESULT_TABLE(study_name, name_axis(ctx, axis), columns, .title = dea_intern(ctx, title),
                        .where = IN_ALL, .every = rows > 9 ? 4 : 0); // the report draws it
-  if (type.name == NULL || type.title == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(type.name != NULL && type.title != NULL);
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &type, map->type->name, LEVELS, &table));
   for (size_t i = 0; i < rows; i++) {
     double value = axis->low + (axis->high - axis->low) * (double)i / (double)(rows - 1);
@@ -549,8 +543,7 @@ static dea_status add_scale(struct dea_context *ctx, const struct map *map,
                                              .columns = columns,
                                              .column_count = OWN + map->plan.count};
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &type, map->type->name, 0, &scale));
-  DEA_TRY(ctx, dea_result_table_add_row(ctx, scale, row));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_result_table_add_row(ctx, scale, row));
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,

@@ -115,9 +115,7 @@ static dea_status add_shapes(struct dea_context *ctx, const struct dea_parts *pa
                              struct dea_design_number *out, size_t *count)
 {
   struct dea_shape_schema *schema = dea_alloc(ctx, 1, sizeof *schema);
-  if (schema == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(schema != NULL);
   dea_shape_schema_fill(schema);
   for (size_t i = 0; i < parts->shape_count; i++) {
     const struct dea_parts_shape *shape = &parts->shapes[i];
@@ -187,8 +185,7 @@ dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *de
     }
   }
   dea_numbers_of_materials(device, true, out, count);
-  DEA_TRY(ctx, add_shapes(ctx, design->parts, device, all, out, count));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, add_shapes(ctx, design->parts, device, all, out, count));
 }
 
 // Changed devices --------------------------------------------------------------------------------

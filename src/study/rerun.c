@@ -15,9 +15,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   struct dea_device *device;
   *out = NULL;
   dea_status status = dea_device_params_build(ctx, file, params, count, p, &design, &device);
-  if (status == DEA_OK) {
-    status = dea_result_create(ctx, design, device, out);
-  }
+  status = status == DEA_OK ? dea_result_create(ctx, design, device, out) : status;
   if (status == DEA_OK) {
     (*out)->surface_bytes_max = 0; // nobody looks at them
     status = dea_study_run(ctx, type, names, name_count, *out);

@@ -511,9 +511,7 @@ static dea_status look(struct dea_context *ctx, const struct dea_model_type *typ
                        struct dea_result *result)
 {
   struct stop *stop = dea_alloc(ctx, 1, sizeof *stop);
-  if (stop == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(stop != NULL);
   stop->memory.ctx = ctx;
   stop->voltage_V = at->voltage_V;
   stop->point = *at;
@@ -527,7 +525,7 @@ static dea_status look(struct dea_context *ctx, const struct dea_model_type *typ
   status = status == DEA_OK ? put_stop(ctx, type->name, stop, result) : status;
   dea_arena_free(&stop->memory);
   dea_free(ctx, stop);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 static dea_status take(struct dea_context *ctx, const struct dea_model_type *type,
@@ -554,7 +552,7 @@ static dea_status press(struct dea_context *ctx, const struct dea_model_type *ty
     status = status == DEA_OK ? look(ctx, type, model, &at, &tip, NULL, 0, result) : status;
   }
   type->destroy(ctx, model);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* The end of a line of study loading. Where that ends before, there is a note. */
@@ -575,7 +573,7 @@ static dea_status load(struct dea_context *ctx, const struct dea_model_type *typ
                              type->name, 1e-3 * voltage_V, dea_context_message(ctx));
     dea_context_clear(ctx);
   }
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* A point of the path. Where that ends before, there is a note. */
@@ -597,7 +595,7 @@ static dea_status follow(struct dea_context *ctx, const struct dea_model_type *t
     dea_context_clear(ctx);
   }
   type->destroy(ctx, model);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,

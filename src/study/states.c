@@ -485,9 +485,7 @@ static dea_status transfer_one(struct search *s, struct dea_model *from,
   bool found = false;
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, from, saved));
   dea_status status = dea_model_transfer(s->ctx, s->type, mesh->model, from, &point, &found);
-  if (status == DEA_OK && found) {
-    DEA_TRY(s->ctx, keep_transferred(s, mesh, i, &point));
-  }
+  DEA_TRY(s->ctx, status == DEA_OK && found ? keep_transferred(s, mesh, i, &point) : DEA_OK);
   return forgive(s->ctx, status);
 }
 
@@ -551,9 +549,7 @@ static dea_status make_mesh(struct search *s, double refinement, struct finer *m
   refine_model(s->settings, refinement, &settings);
   mesh->refinement = refinement;
   mesh->transferred = dea_alloc(s->ctx, s->count, sizeof *mesh->transferred);
-  if (mesh->transferred == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(mesh->transferred != NULL);
   for (size_t i = 0; i < s->count; i++) {
     mesh->transferred[i].is = NONE;
   }
@@ -574,9 +570,7 @@ static dea_status transfer_states(struct search *s, struct finer *meshes, size_t
     struct finer *before = *count > 0 ? &meshes[*count - 1] : NULL;
     struct finer *mesh = &meshes[*count];
     status = make_mesh(s, settings->refinements[*count].si, mesh);
-    if (status == DEA_OK) {
-      status = transfer_all(s, before, mesh);
-    }
+    status = status == DEA_OK ? transfer_all(s, before, mesh) : status;
     if (before != NULL) {
       forget_mesh(s, before);
     }
@@ -1007,9 +1001,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   dea_status status = dea_model_create_whole(ctx, type, design, result->device, &s.model);
   dea_status swept = status == DEA_OK ? sweep_up(&s, count) : status;
   status = forgive(ctx, swept); // states at the voltages that there are
-  if (status == DEA_OK && s.level_count > 0) {
-    status = search_all(&s);
-  }
+  status = status == DEA_OK && s.level_count > 0 ? search_all(&s) : status;
   if (s.level_count > 0 && status != DEA_E_MEMORY) {
     dea_status put = put_result(&s);
     status = status == DEA_OK ? put : status;

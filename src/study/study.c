@@ -255,7 +255,7 @@ static dea_status make_model(struct dea_context *ctx, const struct dea_model_typ
     DEA_TRY(ctx, dea_result_get_curve(ctx, result, type->name, "sweep", &curve));
     dea_curve_end(ctx, curve, status);
   }
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,

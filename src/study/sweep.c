@@ -111,12 +111,8 @@ static dea_status restore(struct dea_context *ctx, const struct dea_model_type *
   struct dea_text identity = {.ctx = ctx};
   dea_status status = dea_model_save(ctx, type, model, &wanted);
   status = status == DEA_OK ? mark_design(ctx, result, &identity, &wanted) : status;
-  if (status == DEA_OK) {
-    status = sink->restore(ctx, sink->user, type->name, &wanted, &state);
-  }
-  if (status == DEA_OK) {
-    status = dea_model_load(ctx, type, model, &state);
-  }
+  status = status == DEA_OK ? sink->restore(ctx, sink->user, type->name, &wanted, &state) : status;
+  status = status == DEA_OK ? dea_model_load(ctx, type, model, &state) : status;
   dea_state_free_values(ctx, &state);
   dea_text_free(&identity);
   if (status != DEA_OK) {

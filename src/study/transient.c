@@ -243,9 +243,7 @@ static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_loa
   if (curve->count == 0) {
     return add(ctx, p, point);
   }
-  if (p->interval_s == 0 && would_be_missed(p, point)) {
-    DEA_TRY(ctx, add(ctx, p, &p->pending));
-  }
+  DEA_TRY(ctx, p->interval_s == 0 && would_be_missed(p, point) ? add(ctx, p, &p->pending) : DEA_OK);
   double waited_s = p->time_s - curve->points[curve->count - 1].time_s;
   if (corner || waited_s >= (p->interval_s > 0 ? p->interval_s : p->longest_s) * (1 - 1e-9)) {
     const bool ends = p->time_s >= p->until_s;
@@ -402,9 +400,7 @@ static dea_status play(struct dea_context *ctx, struct player *p)
 {
   while (p->time_s < p->until_s) {
     find_voltages(p, p->time_s, false);
-    if (voltages_jump(p)) {
-      DEA_TRY(ctx, jump(ctx, p));
-    }
+    DEA_TRY(ctx, voltages_jump(p) ? jump(ctx, p) : DEA_OK);
     double end = fmin(find_corner(p), p->until_s);
     p->next_s = fmin(p->longest_s, 0.1 * (end - p->time_s));
     p->time_s = end - p->time_s <= rounding * end ? end : p->time_s;

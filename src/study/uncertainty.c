@@ -376,9 +376,7 @@ static double std_of(const struct work *w, const struct dea_curve *curve, size_t
 static dea_status fill_curve(struct work *w, struct dea_curve *curve)
 {
   struct dea_load_point *std = dea_alloc(w->ctx, curve->count, sizeof *std);
-  if (std == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(std != NULL);
   for (size_t i = 0; i < curve->count; i++) {
     std[i] = dea_load_point_empty();
     std[i].monitors = dea_monitor_values_copy(&curve->memory, curve->points[i].monitors);
@@ -536,9 +534,7 @@ static dea_status find_all(struct work *w, const struct dea_settings *given)
         w->type->name, w->count);
   }
   dea_yaml_write(dea_yaml_root(w->result->design->document), &w->text);
-  if (w->text.failed) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(!w->text.failed);
   w->file =
       (struct dea_design_bytes){w->result->design->file, dea_text_get(&w->text), w->text.length};
   DEA_TRY(ctx, vary(w));
@@ -555,9 +551,7 @@ dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_desig
     return DEA_OK;
   }
   struct work *w = dea_alloc(ctx, 1, sizeof *w);
-  if (w == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(w != NULL);
   struct dea_result nothing = {.design = design, .device = device};
   *w = (struct work){.ctx = ctx, .rerun = rerun, .result = &nothing};
   dea_status status = find_params(w, given->values);
@@ -571,9 +565,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 {
   (void)model; // none: each device has its own
   struct work *w = dea_alloc(ctx, 1, sizeof *w);
-  if (w == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(w != NULL);
   *w = (struct work){
       .ctx = ctx, .type = type, .rerun = services->rerun, .result = result, .text = {.ctx = ctx}};
   dea_status status = find_all(w, dea_design_settings(result->design, &section));

@@ -102,8 +102,7 @@ static dea_status build_any(struct dea_context *ctx, const char *monitor, bool r
   if (reduced) {
     m->by_monitor = true;
     DEA_TRY(ctx, dea_model_create(ctx, m->type, m->design, m->device, &m->model));
-    DEA_TRY(ctx, dea_film_motion_init(ctx, m->type, m->device, monitor, &m->motion));
-    return DEA_OK;
+    return DEA_CHAIN(ctx, dea_film_motion_init(ctx, m->type, m->device, monitor, &m->motion));
   }
   m->base.name = "3d";
   m->type = &dea_film_table_type;

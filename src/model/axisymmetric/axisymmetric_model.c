@@ -185,16 +185,14 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
 }
 
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  DEA_TRY(ctx, dea_path_solve(ctx, model->path, "axisymmetric", voltage_V,
-                              model->max_stretch / model->disc.pre_stretch, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_path_solve(ctx, model->path, "axisymmetric", voltage_V,
+                                       model->max_stretch / model->disc.pre_stretch, out));
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
@@ -211,9 +209,8 @@ static dea_status path(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_path_options *options, dea_point_sink points,
                        dea_event_sink events, void *user)
 {
-  DEA_TRY(ctx,
-          dea_path_trace(ctx, model->path, options, model->disc.pre_stretch, points, events, user));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_path_trace(ctx, model->path, options, model->disc.pre_stretch, points,
+                                       events, user));
 }
 
 /* Element that holds R; at the electrode edge the one outside. */

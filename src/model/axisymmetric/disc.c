@@ -57,8 +57,7 @@ dea_status dea_disc_check(struct dea_context *ctx, const struct dea_device *devi
 {
   struct dea_film film;
   DEA_TRY(ctx, dea_film_create(ctx, device, &film));
-  DEA_TRY(ctx, check_directions(ctx, &film, device->pre_stretch));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, check_directions(ctx, &film, device->pre_stretch));
 }
 
 dea_status dea_disc_create(struct dea_context *ctx, const struct dea_device *device,

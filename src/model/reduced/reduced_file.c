@@ -44,8 +44,7 @@ dea_status dea_reduced_order_mark(struct dea_context *ctx, struct dea_reduced_or
                                   const struct dea_device *device,
                                   const struct dea_model_settings *settings)
 {
-  DEA_TRY(ctx, hash_device(ctx, device, settings, order->device));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, hash_device(ctx, device, settings, order->device));
 }
 
 // Writing -----------------------------------------------------------------------------------------
@@ -139,7 +138,7 @@ dea_status dea_reduced_order_write(struct dea_context *ctx, const struct dea_red
   DEA_TRY(ctx, dea_json_text(ctx, order_json(order, device), &text));
   dea_status status = dea_file_write(ctx, path, text, strlen(text));
   dea_free(ctx, text);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 // Reading -----------------------------------------------------------------------------------------

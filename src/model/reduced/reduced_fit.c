@@ -236,8 +236,7 @@ dea_status dea_reduced_fit_energy(struct dea_arena *memory, const struct dea_red
   add_slope(&s, 0, 0, variable(grid, 0, grid->forces / 2), variable(grid, 1, 0),
             1 / (scale.q * scale.force));
   end_row(&s, 0);
-  DEA_TRY(memory->ctx, end(memory, &s, out));
-  return DEA_OK;
+  return DEA_CHAIN(memory->ctx, end(memory, &s, out));
 }
 
 dea_status dea_reduced_fit_values(struct dea_arena *memory, const struct dea_reduced_grid *grid,
@@ -257,8 +256,7 @@ dea_status dea_reduced_fit_values(struct dea_arena *memory, const struct dea_red
       end_row(&s, values[j * grid->voltages + i]);
     }
   }
-  DEA_TRY(memory->ctx, end(memory, &s, out));
-  return DEA_OK;
+  return DEA_CHAIN(memory->ctx, end(memory, &s, out));
 }
 
 dea_status dea_reduced_fit_polynomial(struct dea_context *ctx, const double *x, const double *y,

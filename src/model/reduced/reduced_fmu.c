@@ -220,5 +220,5 @@ dea_status dea_reduced_order_write_fmu(struct dea_context *ctx,
   }
   dea_text_free(&xml);
   dea_text_free(&source);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

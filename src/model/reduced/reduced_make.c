@@ -115,8 +115,7 @@ static dea_status restart(struct making *m)
     m->type->destroy(m->ctx, m->model);
     m->model = NULL;
   }
-  DEA_TRY(m->ctx, m->type->create(m->ctx, m->device, &m->settings, &m->model));
-  return DEA_OK;
+  return DEA_CHAIN(m->ctx, m->type->create(m->ctx, m->device, &m->settings, &m->model));
 }
 
 /* Up to the highest voltage, or to where the state is in doubt, and the force that moves the
@@ -262,8 +261,7 @@ static dea_status take_voltages(struct making *m, double error[2])
     DEA_TRY(m->ctx, take_voltage(m, i, side));
     dea_progress(m->ctx, "reduced-order samples", m->grid.voltages - i / 2, m->grid.voltages);
   }
-  DEA_TRY(m->ctx, hold_out(m, error));
-  return DEA_OK;
+  return DEA_CHAIN(m->ctx, hold_out(m, error));
 }
 
 /* With smaller forces where the device does not bear these, and then with smaller voltages: close
@@ -274,8 +272,7 @@ static dea_status take_samples(struct making *m, double error[2])
   for (int trial = 0; trial < TRIALS; trial++) {
     const dea_status status = take_voltages(m, error);
     if (status == DEA_OK || ends(status) || m->settings.reduced.force > 0) {
-      return status == DEA_OK ? DEA_OK
-                              : dea_fail_chain(m->ctx, status, __func__, __FILE__, __LINE__);
+      return DEA_CHAIN(m->ctx, status);
     }
     if (trial + 1 < TRIALS) {
       dea_context_clear(m->ctx);
@@ -306,8 +303,7 @@ static dea_status add_output(struct making *m, struct dea_reduced_order *out,
   }
   struct dea_reduced_output *to = &out->outputs[out->output_count++];
   *to = *of;
-  DEA_TRY(m->ctx, dea_reduced_fit_values(&out->memory, &m->grid, values, &to->of));
-  return DEA_OK;
+  return DEA_CHAIN(m->ctx, dea_reduced_fit_values(&out->memory, &m->grid, values, &to->of));
 }
 
 static dea_status fit_outputs(struct making *m, struct dea_reduced_order *out)
@@ -514,8 +510,7 @@ static dea_status make(struct making *m, struct dea_reduced_order *out)
   out->error = error[0];
   out->charge_error = error[1];
   DEA_TRY(m->ctx, fit(m, out));
-  DEA_TRY(m->ctx, dea_reduced_order_mark(m->ctx, out, m->device, &m->settings));
-  return DEA_OK;
+  return DEA_CHAIN(m->ctx, dea_reduced_order_mark(m->ctx, out, m->device, &m->settings));
 }
 
 dea_status dea_reduced_order_make(struct dea_context *ctx, const struct dea_device *device,
@@ -537,9 +532,7 @@ dea_status dea_reduced_order_make(struct dea_context *ctx, const struct dea_devi
       .highest_V = settings->reduced.voltage_V,
       .viscous = is_viscous(device->layout)};
   *out = dea_alloc(ctx, 1, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(*out != NULL);
   (*out)->memory.ctx = ctx;
   size_t errors = dea_finding_trial_begin(ctx);
   m.massive = dea_device_check_densities(ctx, device) == DEA_OK;

@@ -80,14 +80,14 @@ static dea_status say(struct dea_context *ctx, const struct dea_model *model)
              "; with inertia within %.2g %% where the voltage takes %.2g ms or more to rise",
              100 * follows, 1e3 * rise_s(o, follows));
   }
-  DEA_TRY(ctx, dea_finding_add(
-                   ctx, DEA_NOTE, (struct dea_location){0},
-                   "model reduced: %s up to %.4g kV, made from model 3d in %.3g s; off by %.2g %% "
-                   "of the stroke and %.2g %% of the charge at samples that were left out of the "
-                   "fit%s",
-                   name, 1e-3 * o->voltage_V[1], o->made_s, 100 * o->error, 100 * o->charge_error,
-                   fastest));
-  return DEA_OK;
+  return DEA_CHAIN(
+      ctx,
+      dea_finding_add(
+          ctx, DEA_NOTE, (struct dea_location){0},
+          "model reduced: %s up to %.4g kV, made from model 3d in %.3g s; off by %.2g %% "
+          "of the stroke and %.2g %% of the charge at samples that were left out of the "
+          "fit%s",
+          name, 1e-3 * o->voltage_V[1], o->made_s, 100 * o->error, 100 * o->charge_error, fastest));
 }
 
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
@@ -108,15 +108,13 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   model->body = dea_arena_alloc(&model->memory, l->body_count + 1, sizeof *model->body);
   model->channel = dea_arena_alloc(&model->memory, l->channel_count, sizeof *model->channel);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
-  DEA_TRY(ctx, say(ctx, model));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, say(ctx, model));
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
 }
 
 // Points ------------------------------------------------------------------------------------------

@@ -130,5 +130,5 @@ dea_status dea_reduced_order_write_mujoco(struct dea_context *ctx,
   const dea_status status =
       text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
   dea_text_free(&text);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

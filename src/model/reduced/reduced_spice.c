@@ -176,5 +176,5 @@ dea_status dea_reduced_order_write_spice(struct dea_context *ctx, const struct d
                                 ? DEA_E_MEMORY
                                 : dea_file_write(ctx, path, dea_text_get(&c.text), c.text.length);
   dea_text_free(&c.text);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -148,13 +148,11 @@ dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,
     b.fast += b.core->branch_N_per_m[i] * b.strain * b.strain;
   }
   struct system *s = dea_alloc(ctx, 1, sizeof *s);
-  if (s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(s != NULL);
   add_all(&b, s);
   dea_status status = dea_json_text(ctx, system_json(&b, s, turns), &text);
   status = status == DEA_OK ? dea_file_write(ctx, path, text, strlen(text)) : status;
   dea_free(ctx, text);
   dea_free(ctx, s);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -116,8 +116,7 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_device *d
   for (size_t i = 0; i < mesh->plane->node_count && disc.angle_rad != 0; i++) {
     dea_motion_apply(&turn, mesh->plane->x + 2 * i, mesh->plane->x + 2 * i);
   }
-  DEA_TRY(ctx, name_groups(ctx, mesh));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, name_groups(ctx, mesh));
 }
 
 dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device *device,
@@ -136,9 +135,8 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
                  .fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
       .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
   DEA_TRY_ELSE(ctx, make_plane(ctx, device, out), dea_layout_mesh_free(ctx, out));
-  DEA_TRY(ctx, like != NULL ? dea_layout_mesh_fill_like(ctx, settings, like, out)
-                            : dea_layout_mesh_fill(ctx, settings, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, like != NULL ? dea_layout_mesh_fill_like(ctx, settings, like, out)
+                                     : dea_layout_mesh_fill(ctx, settings, out));
 }
 
 /* Whether blocks are the mesh: of a disc about the origin, of which nothing else is asked for. */
@@ -200,12 +198,9 @@ dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_devi
   struct dea_device near;
   *out = (struct dea_layout_mesh){0};
   if (like->plate.order == 0) {
-    DEA_TRY(ctx, dea_mesh_follow(ctx, device->layout, settings, like, out));
-    return DEA_OK;
+    return DEA_CHAIN(ctx, dea_mesh_follow(ctx, device->layout, settings, like, out));
   }
-  if (!device->disc) {
-    DEA_TRY(ctx, find_near(ctx, device, like, &near));
-  }
+  DEA_TRY(ctx, !device->disc ? find_near(ctx, device, like, &near) : DEA_OK);
   const struct dea_device *disc = device->disc ? device : &near;
   dea_fibre_disc_of_device(disc, settings, &plate);
   DEA_TRY(ctx, dea_disc_mesh_create(ctx, disc, settings, &plate, like, out));

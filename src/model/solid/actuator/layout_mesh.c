@@ -542,8 +542,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_model_settings 
     mesh->surface[i] =
         mesh->membrane && (mesh->dielectric[i] || l->plies[i].kind == DEA_PLY_ELECTRODE);
   }
-  DEA_TRY(ctx, extrude(ctx, settings, mesh));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, extrude(ctx, settings, mesh));
 }
 
 dea_status dea_layout_mesh_fill(struct dea_context *ctx, const struct dea_model_settings *settings,
@@ -579,8 +578,7 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
     out->sector = dea_layout_sector_of(layout);
   }
   DEA_TRY_ELSE(ctx, make_plane(ctx, settings, out), dea_layout_mesh_free(ctx, out));
-  DEA_TRY(ctx, dea_layout_mesh_fill(ctx, settings, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_layout_mesh_fill(ctx, settings, out));
 }
 
 dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea_layout *layout,
@@ -597,8 +595,7 @@ dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea
                                   .like = true,
                                   .group = like->group};
   *memory = (struct dea_arena){.ctx = ctx};
-  DEA_TRY(ctx, dea_layout_mesh_fill_like(ctx, settings, like, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_layout_mesh_fill_like(ctx, settings, like, out));
 }
 
 void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh)

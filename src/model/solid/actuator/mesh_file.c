@@ -112,5 +112,5 @@ dea_status dea_layout_mesh_write(struct dea_context *ctx, const struct dea_layou
     dea_text_free(&active[p]);
   }
   dea_arena_free(&arena);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -611,5 +611,5 @@ dea_status dea_mesh_follow(struct dea_context *ctx, const struct dea_layout *lay
                ? dea_layout_mesh_create_like(ctx, layout, settings, like, plane, &memory, out)
                : status;
   dea_arena_free(&memory);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -61,9 +61,7 @@ static dea_status make_box(struct dea_context *ctx, const struct dea_solid_spec 
 {
   size_t nx = spec->elements[0], ny = spec->elements[1];
   double *cuts = dea_alloc(ctx, nx + ny + 2, sizeof *cuts);
-  if (cuts == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(cuts != NULL);
   for (size_t i = 0; i <= nx; i++) {
     cuts[i] = (double)i / (double)nx;
   }
@@ -127,9 +125,7 @@ static dea_status fill_plies(struct dea_context *ctx, const struct dea_solid_spe
 {
   out->ply_count = spec->ply_count;
   out->part = dea_alloc(ctx, mesh->region_count * spec->ply_count, sizeof *out->part);
-  if (out->part == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(out->part != NULL);
   memset(out->part, -1, mesh->region_count * spec->ply_count * sizeof *out->part);
   for (size_t i = 0; i < spec->fill_count; i++) {
     const struct dea_fill_spec *fill = &spec->fills[i];
@@ -162,9 +158,7 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_solid_spec *
                           struct dea_grid **out)
 {
   struct dea_ply *plies = dea_alloc(ctx, spec->ply_count, sizeof *plies);
-  if (plies == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(plies != NULL);
   for (size_t i = 0; i < spec->ply_count; i++) {
     plies[i] = (struct dea_ply){spec->ply_thickness_m[i], spec->ply_elements[i], spec->order_z};
   }
@@ -190,9 +184,7 @@ static dea_status make_plies(struct dea_context *ctx, const struct dea_solid_spe
   struct filling filling = {0};
   DEA_TRY(ctx, dea_msh_read(ctx, spec->msh_file, spec->msh_unit_m, plane));
   dea_status status = fill_plies(ctx, spec, *plane, &filling);
-  if (status == DEA_OK) {
-    status = extrude(ctx, spec, *plane, &filling, out);
-  }
+  status = status == DEA_OK ? extrude(ctx, spec, *plane, &filling, out) : status;
   dea_free(ctx, filling.part);
   return status;
 }
@@ -422,8 +414,7 @@ static dea_status make_solid(struct dea_context *ctx, const struct dea_solid_spe
                                             .body_of = spec->body_count > 0 ? follows : NULL,
                                             .self = object};
   DEA_TRY(ctx, dea_solid_start(ctx));
-  DEA_TRY(ctx, dea_solid_create(ctx, object->grid, &options, &object->solid));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_create(ctx, object->grid, &options, &object->solid));
 }
 
 static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spec,
@@ -437,9 +428,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
   object->part_count = spec->part_count;
   object->part_materials = dea_alloc(ctx, spec->part_count, sizeof *object->part_materials);
   object->between = dea_alloc(ctx, spec->part_count, sizeof *object->between);
-  if (object->part_materials == NULL || object->between == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(object->part_materials != NULL && object->between != NULL);
   DEA_TRY(ctx, take_channels(ctx, spec, object));
   for (size_t i = 0; i < spec->part_count; i++) {
     DEA_TRY(ctx, make_part_material(ctx, &spec->parts[i], &object->part_materials[i]));
@@ -461,9 +450,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_solid_spec *s
 {
   *out = NULL;
   struct dea_solid_object *object = dea_alloc(ctx, 1, sizeof *object);
-  if (object == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(object != NULL);
   dea_status status = fill(ctx, spec, object);
   if (status != DEA_OK) {
     destroy(ctx, object);
@@ -559,9 +546,7 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_solid_object *o
   object->springs = springs != NULL ? springs : object->springs;
   double *values = dea_resize(ctx, object->spring_values, 2 * count, sizeof *values);
   object->spring_values = values != NULL ? values : object->spring_values;
-  if (springs == NULL || values == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(springs != NULL && values != NULL);
   const struct dea_solid_body *body = &object->solid->problem.bodies[spec->body];
   const struct dea_spring_options options = {.node = body->node + (size_t)spec->component / 3,
                                              .component = spec->component % 3,
@@ -627,8 +612,8 @@ static const double *find_bodies(struct dea_solid_object *object)
 static dea_status set(struct dea_context *ctx, struct dea_solid_object *object, const char *name,
                       double value)
 {
-  DEA_TRY(ctx, dea_solid_settings_set(ctx, dea_solid_settings_of(object->solid), name, value));
-  return DEA_OK;
+  return DEA_CHAIN(ctx,
+                   dea_solid_settings_set(ctx, dea_solid_settings_of(object->solid), name, value));
 }
 
 static bool setting(const struct dea_solid_object *object, size_t number, const char *text[3],
@@ -707,9 +692,7 @@ static dea_status find_charges(struct dea_context *ctx, struct dea_solid_object 
   size_t n = object->channel_count + 1;
   forget_charges(ctx, object);
   double *all = dea_alloc(ctx, 2 * n + 2 * n * n, sizeof *all);
-  if (all == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(all != NULL);
   dea_solid_channel_voltages(object->solid, all);
   dea_status status = dea_solid_charges(ctx, object->solid, all + n);
   if (status == DEA_OK) {
@@ -730,8 +713,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_solid_object *object
 {
   end_path(ctx, object);
   forget_charges(ctx, object);
-  DEA_TRY(ctx, dea_load_steps_solve(ctx, object->solid, voltage_V, &object->report));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_load_steps_solve(ctx, object->solid, voltage_V, &object->report));
 }
 
 static dea_status modes(struct dea_context *ctx, struct dea_solid_object *object, size_t count)
@@ -768,9 +750,8 @@ static dea_status path(struct dea_context *ctx, struct dea_solid_object *object,
   end_path(ctx, object);
   const struct dea_continuation_options options = {.step = step, .unit_m = unit_m};
   object->point = (struct dea_continuation_point){.voltage_V = dea_solid_voltage(object->solid)};
-  DEA_TRY(ctx,
-          dea_solid_continuation_create(ctx, object->solid, voltage_V, &options, &object->path));
-  return DEA_OK;
+  return DEA_CHAIN(
+      ctx, dea_solid_continuation_create(ctx, object->solid, voltage_V, &options, &object->path));
 }
 
 static dea_status step(struct dea_context *ctx, struct dea_solid_object *object)
@@ -831,8 +812,7 @@ static const double *array(struct dea_solid_object *object, const char *name, co
 static dea_status mesh(struct dea_context *ctx, const struct dea_solid_object *object,
                        struct dea_field_mesh **out)
 {
-  DEA_TRY(ctx, dea_solid_volume(ctx, object->solid, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_volume(ctx, object->solid, out));
 }
 
 static bool number(const struct dea_solid_object *object, const char *name, double *out)

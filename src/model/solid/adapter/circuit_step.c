@@ -290,9 +290,9 @@ void dea_circuit_step_destroy(struct dea_context *ctx, struct dea_circuit_step *
 static dea_status try_step(struct dea_context *ctx, struct dea_circuit_step *d, double voltage_V,
                            double length_s, struct dea_solid_report *report)
 {
-  DEA_TRY(ctx, length_s > 0 ? dea_solid_time_step(ctx, d->time, voltage_V, length_s, report)
+  return DEA_CHAIN(ctx, length_s > 0
+                            ? dea_solid_time_step(ctx, d->time, voltage_V, length_s, report)
                             : dea_solid_time_jump(ctx, d->time, voltage_V, report));
-  return DEA_OK;
 }
 
 /* Once the supply is disconnected. */

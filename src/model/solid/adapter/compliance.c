@@ -57,7 +57,7 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, double cop
         -along * dea_solid_dot(w->solid, mode, w->rate) / square[k] / out->by_voltage};
   }
   dea_free(ctx, vector);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* du/dF = K^-1 q_u / copies, du/dV = -K^-1 R_V. */
@@ -105,7 +105,7 @@ static dea_status find_fast(struct dea_context *ctx, struct work *w, double copi
   s->state.internal_variables = NULL;
   dea_solid_forget(s);
   dea_internal_variables_destroy(ctx, held);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid, double copies,
@@ -138,5 +138,5 @@ dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid,
   }
   dea_adjoint_destroy(ctx, w.adjoint);
   dea_free(ctx, w.rate);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -383,9 +383,7 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w)
   for (size_t i = 0; i < w->ask->monitor_count; i++) {
     const size_t at = w->ask->column_count + i;
     w->known[at] = false;
-    if (w->owner->monitor_slope != NULL) {
-      DEA_TRY(ctx, monitor_slope(ctx, w, i, at));
-    }
+    DEA_TRY(ctx, w->owner->monitor_slope != NULL ? monitor_slope(ctx, w, i, at) : DEA_OK);
   }
   return DEA_OK;
 }
@@ -430,8 +428,7 @@ static dea_status evaluate(struct dea_context *ctx, struct work *w, double volta
   for (size_t i = 0; i < dea_gradient_width(w->ask); i++) {
     out[i] = w->known[i] ? -dea_adjoint_product(w->adjoint, i) : NAN;
   }
-  DEA_TRY(ctx, add_quantities(ctx, w, voltage_V, energy_J, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, add_quantities(ctx, w, voltage_V, energy_J, out));
 }
 
 // A held stretch ----------------------------------------------------------------------------------
@@ -616,7 +613,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   }
   dea_adjoint_destroy(ctx, w.adjoint);
   dea_arena_free(&memory);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 // A limit point -----------------------------------------------------------------------------------
@@ -714,7 +711,7 @@ static dea_status find_there(struct dea_context *ctx, const struct dea_gradient_
   status = status == DEA_OK ? dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J)
                             : status;
   dea_solid_saved_state_free(&here);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,

@@ -90,8 +90,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_layout_mesh 
   DEA_TRY(ctx, dea_surface_create(ctx, mesh->grid,
                                   probe->from_fibre_side ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
                                   select_face, &choice, &indent->surface));
-  DEA_TRY(ctx, dea_contact_create(ctx, indent->surface, &options, &indent->contact));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_contact_create(ctx, indent->surface, &options, &indent->contact));
 }
 
 dea_status dea_indent_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
@@ -176,8 +175,7 @@ static dea_status keep_last(struct dea_context *ctx, struct dea_solid *s, double
   way->before = way->last;
   way->before_m = way->last_m;
   way->last_m = depth_m;
-  DEA_TRY(ctx, dea_solid_save_state(ctx, s, &way->last));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_save_state(ctx, s, &way->last));
 }
 
 /* From the last state as far straight on from the one before as the tip goes: there the surface is
@@ -235,7 +233,7 @@ dea_status dea_indent_move(struct dea_context *ctx, struct dea_indent *indent,
   } while (status == DEA_OK && indent->depth_m != depth_m);
   dea_solid_saved_state_free(&way.last);
   dea_solid_saved_state_free(&way.before);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 double dea_indent_force(const struct dea_indent *indent, const double *u)

@@ -221,9 +221,8 @@ static dea_status solve_each(struct dea_context *ctx, const struct dea_motions *
 {
   struct dea_damping spread = *damping;
   DEA_TRY(ctx, spread_ratio(ctx, m, &spread));
-  DEA_TRY(ctx, dea_solid_respond_viscous(ctx, m->solid, m->branches, &spread, rad_per_s, count,
-                                         take, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_respond_viscous(ctx, m->solid, m->branches, &spread, rad_per_s,
+                                                  count, take, out));
 }
 
 dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *m,
@@ -246,5 +245,5 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
   const dea_status status =
       (is_viscous(m) ? solve_each : superpose)(ctx, m, &damping, rad_per_s, count, &out);
   dea_free(ctx, rad_per_s);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -211,8 +211,7 @@ dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model
                                  "under this load; it goes on from the stable one below it",
                                  1e-3 * model->at.voltage_V));
   }
-  DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
 }
 
 dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,
@@ -226,9 +225,8 @@ dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model 
   for (size_t i = 0; i < model->solid->problem.dofs; i++) {
     out->value += model->pull.slope[i] * u[i];
   }
-  DEA_TRY(ctx, dea_compliance_find(ctx, model->solid, model->copies, model->at.voltage_V,
-                                   model->pull.slope, model->plies.branches, with, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_compliance_find(ctx, model->solid, model->copies, model->at.voltage_V,
+                                            model->pull.slope, model->plies.branches, with, out));
 }
 
 /* A step in time, in which a control may move. */
@@ -240,6 +238,5 @@ dea_status dea_solid_model_advance(struct dea_context *ctx, struct dea_model *mo
     DEA_TRY(ctx, check_control(ctx, model, step->control, step->value));
     DEA_TRY(ctx, set_control(ctx, model, step->control, step->value));
   }
-  DEA_TRY(ctx, dea_solver_state_advance(ctx, model, step, out, error));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solver_state_advance(ctx, model, step, out, error));
 }

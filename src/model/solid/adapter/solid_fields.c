@@ -129,13 +129,11 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_volume(struct dea_context *ctx, const struct dea_solid *solid,
                             struct dea_field_mesh **out)
 {
-  DEA_TRY(ctx, recover(ctx, solid, -1, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, recover(ctx, solid, -1, out));
 }
 
 dea_status dea_solid_surface(struct dea_context *ctx, const struct dea_solid *solid, int ply,
                              struct dea_field_mesh **out)
 {
-  DEA_TRY(ctx, recover(ctx, solid, ply, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, recover(ctx, solid, ply, out));
 }

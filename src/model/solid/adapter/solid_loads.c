@@ -175,8 +175,7 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_model *model, s
   };
   DEA_TRY(ctx, dea_spring_create(ctx, &options, &model->springs[i]));
   const struct dea_solid_load load = dea_spring_load(model->springs[i]);
-  DEA_TRY(ctx, dea_solid_add_load(ctx, model->solid, &load));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_add_load(ctx, model->solid, &load));
 }
 
 /* What a liquid's volume is exact to, over the root of the third power of its face's area. */
@@ -243,8 +242,7 @@ static dea_status add_pressure(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, dea_pressure_create_flat(ctx, *surface, height_m, &model->pressures[i]));
   enclose(model, i, dea_surface_area(*surface));
   const struct dea_solid_load load = dea_pressure_load(model->pressures[i]);
-  DEA_TRY(ctx, dea_solid_add_load(ctx, model->solid, &load));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_add_load(ctx, model->solid, &load));
 }
 
 /* All pressures at once, times a factor. */
@@ -505,8 +503,7 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
   memcpy(force, dea_solid_reaction(model->solid), values * sizeof *force);
   DEA_TRY(ctx, dea_solid_supports_hold(ctx, model, false));
   DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->at.report));
-  DEA_TRY(ctx, go_to_loads(ctx, model));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, go_to_loads(ctx, model));
 }
 
 /* From the flat state straight to that of a disc, whose film is at rest there but for what its

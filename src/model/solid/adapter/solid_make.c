@@ -99,13 +99,8 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
                             "(compute.solid.refinement makes it finer)",
                             model->settings.order, grid->order));
   }
-  if (model->settings.field == DEA_FIELD_COUPLED) {
-    DEA_TRY(ctx, say_coupled(ctx, model));
-  }
-  if (model->mesh.membrane) {
-    DEA_TRY(ctx, say_membrane(ctx, model));
-  }
-  return DEA_OK;
+  DEA_TRY(ctx, model->settings.field == DEA_FIELD_COUPLED ? say_coupled(ctx, model) : DEA_OK);
+  return DEA_CHAIN(ctx, model->mesh.membrane ? say_membrane(ctx, model) : DEA_OK);
 }
 
 /* Where the weight alone brings the film of a disc. */
@@ -162,8 +157,7 @@ dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *m
       .self = &model->mesh,
   };
   DEA_TRY(ctx, dea_solid_create(ctx, model->mesh.grid, &options, &model->solid));
-  DEA_TRY(ctx, dea_solid_loads_add(ctx, model));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_loads_add(ctx, model));
 }
 
 static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
@@ -242,8 +236,7 @@ dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_dev
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, &model->observer));
   DEA_TRY(ctx, dea_solid_loads_release(ctx, model));
   DEA_TRY(ctx, keep_rest(ctx, model));
-  DEA_TRY(ctx, say_sag(ctx, model));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, say_sag(ctx, model));
 }
 
 /* Loads, mesh and arrays. */

@@ -28,11 +28,8 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
       .channels = !model->disc || dea_layout_has_sheet_resistance(model->layout),
       .copies = model->copies,
       .thickness_m = model->layout->plies[model->plies.film].thickness_m};
-  if (time->inertia) {
-    DEA_TRY(ctx, dea_solid_check_densities(ctx, model));
-  }
-  DEA_TRY(ctx, dea_solver_state_begin(ctx, &model->at, &driven, time, out));
-  return DEA_OK;
+  DEA_TRY(ctx, time->inertia ? dea_solid_check_densities(ctx, model) : DEA_OK);
+  return DEA_CHAIN(ctx, dea_solver_state_begin(ctx, &model->at, &driven, time, out));
 }
 
 // Saved states -----------------------------------------------------------------------------------
@@ -94,9 +91,8 @@ static dea_status save(struct dea_context *ctx, struct dea_model *model, struct 
     DEA_TRY(ctx, dea_arena_status(&model->memory));
     mark_layout(model->layout, &model->marks);
   }
-  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "loads", model->marks.out,
-                                  model->marks.count * sizeof *model->marks.out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_state_add_mark(ctx, out, "loads", model->marks.out,
+                                           model->marks.count * sizeof *model->marks.out));
 }
 
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
@@ -224,8 +220,7 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
       dea_motions_modes(ctx, &motions, (int)model->plies.film, at, count, points, shapes);
   dea_solid_liquids_stiffen(model, false);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, make_whole(ctx, model, shapes));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, make_whole(ctx, model, shapes));
 }
 
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
@@ -234,8 +229,7 @@ static dea_status fields(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
                    ? dea_solid_volume(ctx, model->solid, out)
                    : dea_solid_surface(ctx, model->solid, (int)model->plies.film, out));
-  DEA_TRY(ctx, make_whole(ctx, model, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, make_whole(ctx, model, out));
 }
 
 /* Of a disc: along the first fibre's axis and halfway between it and the next. Of others: none. */
@@ -253,7 +247,7 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
   dea_status status = dea_line_profile(ctx, surface, 0, dea_fibre_disc_angle(p) / p->sectors,
                                        model->device->pre_stretch, &model->profile, out);
   dea_field_mesh_destroy(ctx, surface);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 // Other ways to a state ---------------------------------------------------------------------------
@@ -274,8 +268,7 @@ static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                     "the probe stopped at a depth of %.4g mm on its way to %.4g mm (%s)",
                     1e3 * model->indent->depth_m, 1e3 * depth_m, why);
   }
-  DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
 }
 
 /* Of a disc to a stretch of its electrode too. */
@@ -296,8 +289,7 @@ static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
   }
   dea_status status = dea_solver_state_path(ctx, &model->at, options, &end, points, events, user);
   dea_free(ctx, weight);
-  DEA_TRY(ctx, status);
-  return DEA_OK;
+  return DEA_CHAIN(ctx, status);
 }
 
 static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
@@ -308,14 +300,13 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
   dea_buckling_branch_fold(model->solid, model->mesh.grid, &model->band, way->side, fold);
   dea_status status = dea_solver_state_push(ctx, &model->at, way, fold, out, found);
   dea_free(ctx, fold);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
                            const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
-  DEA_TRY(ctx, dea_solver_state_transfer(ctx, &model->at, &from->at, out, found));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solver_state_transfer(ctx, &model->at, &from->at, out, found));
 }
 
 static void size(const struct dea_model *model, struct dea_model_size *out)
@@ -490,8 +481,7 @@ static dea_status make_anew(struct dea_context *ctx, const struct adaptation *a,
 {
   dea_solid_model_destroy(ctx, *model);
   *model = NULL;
-  DEA_TRY(ctx, make(ctx, a->device, &a->settings, model));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, make(ctx, a->device, &a->settings, model));
 }
 
 /* To the mesh that is exact enough; *model: on it, at rest. */
@@ -514,8 +504,7 @@ static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct de
     }
     DEA_TRY(ctx, make_anew(ctx, a, model)); // the last one too: to be at rest
   }
-  DEA_TRY(ctx, say_end(ctx, a));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, say_end(ctx, a));
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
@@ -541,8 +530,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   dea_free(ctx, a.pass);
   dea_free(ctx, a.now);
   dea_free(ctx, a.next);
-  DEA_TRY(ctx, status);
-  return DEA_OK;
+  return DEA_CHAIN(ctx, status);
 }
 
 extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_module;

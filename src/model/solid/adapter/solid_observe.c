@@ -274,9 +274,7 @@ dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_
   const struct dea_layout *l = mesh->layout;
   struct dea_observer *o = dea_alloc(ctx, 1, sizeof *o);
   *out = NULL;
-  if (o == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(o != NULL);
   *o = (struct dea_observer){.memory = {.ctx = ctx}, .mesh = mesh, .pressures = pressures};
   o->count = l->monitor_count + l->disc_monitor_count;
   o->of_disc = dea_arena_alloc(&o->memory, l->disc_monitor_count, sizeof *o->of_disc);
@@ -572,9 +570,7 @@ dea_status dea_observer_errors(struct dea_context *ctx, struct dea_observer *o,
     return DEA_OK;
   }
   double *weights = dea_solid_alloc(ctx, MOST * dofs, sizeof *weights);
-  if (weights == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(weights != NULL);
   for (size_t i = 0; i < count && asked < MOST; i++) {
     if (o->of_disc[i].error_column >= 0) {
       each[asked] = (struct dea_solid_quantity){.weight = weights + asked * dofs};
@@ -655,9 +651,7 @@ dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observ
   size_t count = 3 * grid->node_count;
   double *u = dea_solid_displacement(solid), *keep = dea_solid_alloc(ctx, count, sizeof *keep);
   double most = 0, size = 0;
-  if (keep == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_TRY_MEMORY(keep != NULL);
   memcpy(keep, u, count * sizeof *keep);
   for (size_t i = 0; i < count; i++) {
     most = fmax(most, fabs(v[i]));

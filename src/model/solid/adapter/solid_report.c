@@ -93,8 +93,7 @@ dea_status dea_solid_model_report(struct dea_context *ctx, void *self, double vo
   out->capacitance_F = model->copies * capacitance_F;
   out->unstable_modes = model->at.report.unstable_modes;
   out->stable = out->unstable_modes == 0;
-  DEA_TRY(ctx, dea_observer_errors(ctx, model->observer, model->solid, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_observer_errors(ctx, model->observer, model->solid, out));
 }
 
 /* Whether it is back where it was released, to a thousandth of the film's thickness. */
@@ -152,6 +151,5 @@ dea_status dea_solid_model_arrived(struct dea_context *ctx, void *self, double v
   struct dea_model *model = self;
   model->at.voltage_V = voltage_V;
   dea_solid_model_note_states(model, model->at.report.snapped);
-  DEA_TRY(ctx, take_side(ctx, model));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, take_side(ctx, model));
 }

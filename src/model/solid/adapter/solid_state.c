@@ -50,8 +50,7 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
     }
   }
   out->number_count += count;
-  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "materials", to, count * sizeof *to));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_state_add_mark(ctx, out, "materials", to, count * sizeof *to));
 }
 
 dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct dea_state *out)
@@ -78,8 +77,7 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
   bool before = s->found.factor_before && (s->found.factor_fits || s->found.stiff_factor_fits);
   DEA_TRY(ctx, dea_state_add(ctx, out, "state of the factor", before ? path->factored : path->keep,
                              path->state_count));
-  DEA_TRY(ctx, dea_state_add_numbers(ctx, out, "solid", own, sizeof own / sizeof own[0]));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_state_add_numbers(ctx, out, "solid", own, sizeof own / sizeof own[0]));
 }
 
 /* The factor that the equilibrium has left for the start of the next step: it is of `factored`, the
@@ -113,6 +111,5 @@ dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
   dea_solid_controls_set(s, controls);
   s->found.force_largest_N = own[0];
   s->found.energy_largest_J = own[1];
-  DEA_TRY(ctx, factorise(ctx, s, factored, now));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, factorise(ctx, s, factored, now));
 }

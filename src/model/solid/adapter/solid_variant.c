@@ -109,8 +109,7 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
     }
   }
   DEA_TRY(ctx, check_held(ctx, model));
-  DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, &model->observer));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, &model->observer));
 }
 
 /* Supports and bodies to where the changed device has them: these are no unknowns, which stay. */
@@ -184,13 +183,9 @@ static dea_status enter(struct dea_context *ctx, void *self, const struct dea_de
   if (device == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "there is no device with a number a little beside it");
   }
-  if (device != model->variant->own.device) {
-    DEA_TRY(ctx, enter_device(ctx, model, device));
-  }
-  if (model->indent != NULL) {
-    DEA_TRY(ctx, enter_tip(ctx, model, change->pressed[side]));
-  }
-  return DEA_OK;
+  DEA_TRY(ctx, device != model->variant->own.device ? enter_device(ctx, model, device) : DEA_OK);
+  return DEA_CHAIN(ctx,
+                   model->indent != NULL ? enter_tip(ctx, model, change->pressed[side]) : DEA_OK);
 }
 
 static dea_status hold_tip(struct dea_context *ctx, void *self)
@@ -370,8 +365,7 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
   v->ask = ask;
   v->own = *model;
   DEA_TRY(ctx, find_asked_motions(ctx, model));
-  DEA_TRY(ctx, dea_gradient_find(ctx, &owner, ask, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_gradient_find(ctx, &owner, ask, out));
 }
 
 dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *model,
@@ -383,9 +377,7 @@ dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *m
   if (dea_charge_is_held(model->solid)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "gradients at a given charge are not supported");
   }
-  if (dea_gradient_asks_mode(ask)) {
-    DEA_TRY(ctx, dea_solid_check_densities(ctx, model));
-  }
+  DEA_TRY(ctx, dea_gradient_asks_mode(ask) ? dea_solid_check_densities(ctx, model) : DEA_OK);
   struct dea_model_variant *v = model->variant = dea_arena_alloc(&memory, 1, sizeof *v);
   double *values = dea_arena_alloc(&memory, 4 * p->dofs, sizeof *values);
   double *own_V = dea_arena_alloc(&memory, p->channel_count + 1, sizeof *own_V);
@@ -404,5 +396,5 @@ dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *m
   }
   model->variant = NULL;
   dea_arena_free(&memory);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

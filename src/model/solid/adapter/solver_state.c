@@ -46,8 +46,7 @@ dea_status dea_solver_state_solve(struct dea_context *ctx, struct dea_model *mod
     DEA_TRY(ctx, dea_step_outcome_go(ctx, &solver_state->outcome, solver_state->voltage_V,
                                      voltage_V, &solver_state->report));
   }
-  DEA_TRY(ctx, owner->point(ctx, owner->model, solver_state->voltage_V, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, owner->point(ctx, owner->model, solver_state->voltage_V, out));
 }
 
 const struct dea_event *dea_solver_state_limit(const struct dea_model *model)
@@ -78,8 +77,7 @@ static dea_status path_point(struct dea_context *ctx, struct dea_solver_state *s
   const struct dea_step_outcome_owner *owner = &solver_state->outcome.owner;
   solver_state->report.energy_J = at->energy_J;
   solver_state->report.unstable_modes = at->unstable_modes;
-  DEA_TRY(ctx, owner->point(ctx, owner->model, at->voltage_V, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, owner->point(ctx, owner->model, at->voltage_V, out));
 }
 
 /* How far the solid is beyond the end, in its unit. */
@@ -131,8 +129,7 @@ static dea_status put_point(struct dea_context *ctx, struct dea_solver_state *so
 {
   struct dea_load_point point;
   DEA_TRY(ctx, path_point(ctx, solver_state, at, &point));
-  DEA_TRY(ctx, sinks->points(sinks->user, &point));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, sinks->points(sinks->user, &point));
 }
 
 /* The point where the step ends, or the path within it. */
@@ -143,9 +140,7 @@ static dea_status take_step(struct dea_context *ctx, struct dea_solver_state *so
   const struct dea_solver_state_end *end = sinks->end;
   const struct dea_continuation_point step = *at;
   *ended = beyond(solver_state, end) >= 0;
-  if (!*ended) {
-    DEA_TRY(ctx, put_point(ctx, solver_state, at, sinks));
-  }
+  DEA_TRY(ctx, !*ended ? put_point(ctx, solver_state, at, sinks) : DEA_OK);
   if (step.passed != DEA_CONTINUATION_NOTHING) {
     DEA_TRY(ctx, path_event(ctx, solver_state, path, sinks, &step));
   }
@@ -211,7 +206,7 @@ dea_status dea_solver_state_path(struct dea_context *ctx, struct dea_solver_stat
   }
   dea_solid_continuation_destroy(ctx, path);
   dea_solid_saved_state_free(&from);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 // Other states -----------------------------------------------------------------------------------
@@ -354,8 +349,7 @@ dea_status dea_solver_state_begin(struct dea_context *ctx, struct dea_solver_sta
   DEA_TRY(ctx, owner->point(ctx, owner->model, solver_state->voltage_V, out));
   DEA_TRY(ctx, dea_circuit_step_create(ctx, driven, time, &solver_state->driven));
   solver_state->stored_J = out->energy_J + dea_circuit_step_charged_J(solver_state->driven);
-  DEA_TRY(ctx, report_time(ctx, solver_state, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, report_time(ctx, solver_state, out));
 }
 
 dea_status dea_solver_state_advance(struct dea_context *ctx, struct dea_model *model,
@@ -371,8 +365,7 @@ dea_status dea_solver_state_advance(struct dea_context *ctx, struct dea_model *m
   }
   DEA_TRY(ctx,
           dea_circuit_step_advance(ctx, solver_state->driven, step, &solver_state->report, error));
-  DEA_TRY(ctx, report_time(ctx, solver_state, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, report_time(ctx, solver_state, out));
 }
 
 void dea_solver_state_accept(struct dea_model *model)
@@ -389,8 +382,7 @@ dea_status dea_solver_state_save(struct dea_context *ctx,
       [VOLTAGE] = solver_state->voltage_V, [LEFT_A_STATE] = solver_state->left_a_state ? 1 : 0};
   *out = (struct dea_state){0};
   DEA_TRY(ctx, dea_solid_save(ctx, solver_state->outcome.owner.solid, out));
-  DEA_TRY(ctx, dea_state_add_numbers(ctx, out, own_name, own, NUMBERS));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_state_add_numbers(ctx, out, own_name, own, NUMBERS));
 }
 
 dea_status dea_solver_state_load(struct dea_context *ctx, struct dea_model *model,

@@ -549,8 +549,7 @@ dea_status dea_solid_bodies_create(struct dea_context *ctx, struct dea_solid *s,
   for (size_t k = 0; k < count; k++) {
     DEA_TRY(ctx, check_body(ctx, s, k));
   }
-  DEA_TRY(ctx, check_elements(ctx, s));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, check_elements(ctx, s));
 }
 
 /* ---- what callers ask of a body ---- */

@@ -225,8 +225,7 @@ dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *s,
   }
   s->state.own_V[channel] = there;
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
 }
 
 /* Factorises the tangent at the equilibrium, of the solid as good as incompressible. */
@@ -282,5 +281,5 @@ dea_status dea_solid_capacitances(struct dea_context *ctx, struct dea_solid *s, 
   dea_status status = forces != NULL ? DEA_OK : DEA_E_MEMORY;
   status = status == DEA_OK ? add_motion(ctx, s, forces, capacitance_F) : status;
   dea_free(ctx, forces);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -174,9 +174,7 @@ dea_status dea_charge_hold(struct dea_context *ctx, struct dea_solid *solid, siz
                            double charge_C)
 {
   double sums[2];
-  if (solid->problem.charge == NULL) {
-    DEA_TRY(ctx, dea_charge_create(ctx, solid));
-  }
+  DEA_TRY(ctx, solid->problem.charge == NULL ? dea_charge_create(ctx, solid) : DEA_OK);
   struct dea_charge *c = solid->problem.charge;
   if (!c->held) {
     c->channel = channel;

@@ -550,5 +550,5 @@ dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid
     memcpy(s->state.u, keep, p->dofs * sizeof *keep);
   }
   dea_free(ctx, keep);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -372,8 +372,7 @@ static dea_status make_room(struct dea_context *ctx, struct dea_fronts *f)
   f->beyond = dea_arena_alloc(&f->memory, rows, sizeof *f->beyond);
   f->oo = dea_arena_alloc(&f->memory, own * own, sizeof *f->oo);
   f->below = dea_arena_alloc(&f->memory, PER * (size_t)f->nodes, sizeof *f->below);
-  DEA_TRY(ctx, dea_arena_status(&f->memory));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_arena_status(&f->memory));
 }
 
 static dea_status analyse(struct dea_context *ctx, struct analysis *a, struct dea_fronts *f)
@@ -402,8 +401,7 @@ static dea_status analyse(struct dea_context *ctx, struct analysis *a, struct de
   DEA_TRY(ctx, make_fronts(ctx, a, f));
   link_fronts(f, work);
   place_blocks(a, f, work, next);
-  DEA_TRY(ctx, make_room(ctx, f));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, make_room(ctx, f));
 }
 
 static double count_entries(Mat K)

@@ -74,12 +74,11 @@ dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s
   dea_solid_raise_bulk_modulus(s);
   dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
   dea_solid_restore_bulk_modulus(s);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   DEA_TRY(ctx, dea_solid_assemble_stiff(ctx, s));
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, negative));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_factorise(ctx, s, negative));
 }

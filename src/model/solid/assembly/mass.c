@@ -32,15 +32,13 @@ static dea_status add_point_masses(struct dea_context *ctx, struct dea_solid *s,
     }
   }
   DEA_TRY(ctx, dea_solid_bodies_add_diagonal(ctx, s, A, factor, p->point_mass, 1));
-  DEA_TRY(ctx, dea_solid_end_matrix(ctx, A));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_end_matrix(ctx, A));
 }
 
 dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor)
 {
   DEA_TRY(ctx, dea_solid_add_scalar(ctx, s, A, factor, mass_of));
-  DEA_TRY(ctx, add_point_masses(ctx, s, A, factor));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, add_point_masses(ctx, s, A, factor));
 }
 
 /* 0 in K's pattern. */
@@ -117,15 +115,13 @@ static dea_status laplace_of(const struct dea_solid *s, size_t e, double *laplac
 dea_status dea_solid_add_laplace(struct dea_context *ctx, struct dea_solid *s, Mat A,
                                  double amount_Pa)
 {
-  DEA_TRY(ctx, dea_solid_add_scalar(ctx, s, A, amount_Pa, laplace_of));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_add_scalar(ctx, s, A, amount_Pa, laplace_of));
 }
 
 dea_status dea_solid_create_laplace(struct dea_context *ctx, struct dea_solid *s, Mat *out)
 {
   DEA_TRY(ctx, create_like_tangent(ctx, s, out));
-  DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, *out, 1));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_add_laplace(ctx, s, *out, 1));
 }
 
 void dea_solid_lump_volume(const struct dea_solid *s, double *volume)

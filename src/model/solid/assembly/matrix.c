@@ -296,8 +296,7 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
   }
   status = dea_solid_allreduce(ctx, status);
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, A));
-  DEA_TRY(ctx, status);
-  return DEA_OK;
+  return DEA_CHAIN(ctx, status);
 }
 
 /* ---- factor and solutions ---- */
@@ -341,9 +340,7 @@ static dea_status try_factor(struct dea_context *ctx, Mat A, PetscInt room_perce
 {
   MatFactorInfo info;
   MatFactorInfoInitialize(&info);
-  if (*factor == NULL) {
-    DEA_TRY(ctx, analyse(ctx, A, room_percent, factor));
-  }
+  DEA_TRY(ctx, *factor == NULL ? analyse(ctx, A, room_percent, factor) : DEA_OK);
   DEA_PETSC(ctx, MatSetErrorIfFailure(A, PETSC_FALSE)); // as SLEPc's solvers set it
   DEA_PETSC(ctx, MatCholeskyFactorNumeric(*factor, A, &info));
   DEA_PETSC(ctx, MatFactorGetError(*factor, error));
@@ -430,17 +427,14 @@ dea_status dea_solid_factor_any(struct dea_context *ctx, struct dea_solid *s)
   int fewer;
   s->work.by_fronts = false;
   DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
-  DEA_TRY(ctx, dea_solid_rank_one_factor(ctx, s, solve_by_factor, &fewer));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_rank_one_factor(ctx, s, solve_by_factor, &fewer));
 }
 
 /* The factor by MUMPS, as dea_solid_factorise. */
 static dea_status factor_by_pivots(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   PetscInt minus, zero, plus;
-  if (s->work.factor == NULL) {
-    DEA_TRY(ctx, analyse(ctx, s->work.K, ROOM, &s->work.factor));
-  }
+  DEA_TRY(ctx, s->work.factor == NULL ? analyse(ctx, s->work.K, ROOM, &s->work.factor) : DEA_OK);
   DEA_PETSC(ctx, MatMumpsSetCntl(s->work.factor, 3, s->work.takes_small_pivots ? -1e-300 : 0));
   DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
   DEA_PETSC(ctx, MatGetInertia(s->work.factor, &minus, &zero, &plus));
@@ -541,8 +535,7 @@ static void collect(struct dea_solid *s, double *right)
 dea_status dea_solid_solve_rows(struct dea_context *ctx, struct dea_solid *s, Vec right, Vec x)
 {
   DEA_TRY(ctx, solve_by_factor(ctx, s, right, x));
-  DEA_TRY(ctx, dea_solid_rank_one_correct(ctx, s, right, x));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_rank_one_correct(ctx, s, right, x));
 }
 
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
@@ -552,8 +545,7 @@ dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, 
   collect(s, out);
   DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->work.right));
   DEA_TRY(ctx, dea_solid_solve_rows(ctx, s, s->work.right, s->work.solution));
-  DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->work.solution, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_from_vector(ctx, s, s->work.solution, out));
 }
 
 /* Columns of right into those of a dense matrix, or its columns into those of out. */
@@ -594,8 +586,7 @@ static dea_status solve_block(struct dea_context *ctx, struct dea_solid *s, size
   }
   DEA_TRY(ctx, put_columns(ctx, s, count, right, sides[0]));
   DEA_PETSC(ctx, MatMatSolve(s->work.factor, sides[0], sides[1]));
-  DEA_TRY(ctx, take_columns(ctx, s, count, sides[1], out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, take_columns(ctx, s, count, sides[1], out));
 }
 
 dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, size_t count,
@@ -614,5 +605,5 @@ dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, si
   dea_status status = solve_block(ctx, s, count, right, out, sides);
   MatDestroy(&sides[0]);
   MatDestroy(&sides[1]);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

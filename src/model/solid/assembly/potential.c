@@ -82,8 +82,7 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "a coupled field needs a constant permittivity");
     }
   }
-  DEA_TRY(ctx, hold_potentials(ctx, s, options));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, hold_potentials(ctx, s, options));
 }
 
 dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s,
@@ -258,8 +257,7 @@ dea_status dea_solid_scale_potential(struct dea_context *ctx, struct dea_solid *
   const struct dea_solid_problem *p = &s->problem;
   const size_t nodes = p->grid->node_count;
   if (p->field != NULL && (s->state.voltage_V == 0 || !is_without_charge(s))) {
-    DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, u));
-    return DEA_OK;
+    return DEA_CHAIN(ctx, dea_solid_solve_potential(ctx, s, voltage_V, u));
   }
   for (size_t i = 3 * nodes; i < p->dofs; i++) {
     u[i] = s->state.u[i] * voltage_V / s->state.voltage_V;

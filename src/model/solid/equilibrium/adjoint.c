@@ -145,8 +145,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
     DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
   }
   a->stiff = s->found.factor_fits ? 1 : DEA_SOLID_STIFF;
-  DEA_TRY(ctx, find_constraints(ctx, a));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, find_constraints(ctx, a));
 }
 
 dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,

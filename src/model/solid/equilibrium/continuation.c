@@ -165,8 +165,7 @@ static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuat
     t->right[i] = (t->rate[i] - s->work.g[i]) / by;
   }
   memcpy(s->work.g, t->rate, size);
-  DEA_TRY(ctx, set_load(ctx, t, tau));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, set_load(ctx, t, tau));
 }
 
 /* t->rate = du/d tau with the factor that is there, from t->right. */
@@ -325,8 +324,7 @@ static dea_status find_rate(struct dea_context *ctx, struct dea_solid_continuati
   dea_solid_restore_bulk_modulus(s);
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, modes));
-  DEA_TRY(ctx, displacement_rate(ctx, t));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, displacement_rate(ctx, t));
 }
 
 /* The place of the solid as it is; along: a displacement and load that the path's sense makes a
@@ -358,8 +356,7 @@ static dea_status return_to(struct dea_context *ctx, struct dea_solid_continuati
 {
   dea_solid_state_set(t->s, place->state);
   dea_solid_forget(t->s);
-  DEA_TRY(ctx, set_load(ctx, t, place->load));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, set_load(ctx, t, place->load));
 }
 
 /* From an equilibrium by du [dofs] and dtau, pressures and predicted stresses along. */
@@ -377,8 +374,7 @@ static dea_status predict_from(struct dea_context *ctx, struct dea_solid_continu
   for (size_t i = 0; i < s->problem.dofs; i++) {
     s->state.u[i] += du[i];
   }
-  DEA_TRY(ctx, set_load(ctx, t, t->load + dtau));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, set_load(ctx, t, t->load + dtau));
 }
 
 static void report_point(const struct dea_solid_continuation *t,
@@ -472,8 +468,7 @@ static dea_status follow_curve(struct dea_context *ctx, struct dea_solid_continu
     double *p = &s->state.multiplier[i], rate = (*p - last[dofs + i]) / t->step;
     *p += square * (before[dofs + i] - last[dofs + i] + h * rate);
   }
-  DEA_TRY(ctx, set_load(ctx, t, t->load + load));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, set_load(ctx, t, t->load + load));
 }
 
 /* A point at t->step into t->next; *off: how far from the prediction by the tangent, over the step.
@@ -579,8 +574,7 @@ dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_c
   const double way = load - t->before.load;
   memset(t->start, 0, t->s->problem.dofs * sizeof *t->start);
   set_plane(t, t->start, 1, &t->before, way, 0);
-  DEA_TRY(ctx, solve_between(ctx, t, way / (t->last.load - t->before.load), point));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, solve_between(ctx, t, way / (t->last.load - t->before.load), point));
 }
 
 dea_status dea_solid_continuation_across(struct dea_context *ctx, struct dea_solid_continuation *t,
@@ -594,8 +588,7 @@ dea_status dea_solid_continuation_across(struct dea_context *ctx, struct dea_sol
   }
   memcpy(t->plane.weight, weight, t->s->problem.dofs * sizeof *weight);
   lay_plane(t, 0, &t->before, value - from, 0);
-  DEA_TRY(ctx, solve_between(ctx, t, (value - from) / (to - from), point));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, solve_between(ctx, t, (value - from) / (to - from), point));
 }
 
 /* ---- creation ---- */
@@ -670,8 +663,7 @@ static dea_status begin_path(struct dea_context *ctx, struct dea_solid_continuat
   for (size_t i = 0; i < s->problem.dofs; i++) {
     t->held_rate[i] = s->work.increment[i] - t->held_rate[i];
   }
-  DEA_TRY(ctx, record_point(ctx, t, t->tangent, sense, true, &t->last));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, record_point(ctx, t, t->tangent, sense, true, &t->last));
 }
 
 dea_status dea_continuation_create_to(struct dea_context *ctx, struct dea_solid *s,
@@ -871,8 +863,7 @@ static dea_status locate_between(struct dea_context *ctx, struct dea_solid_conti
   if (b->value[0] * b->value[1] > 0) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no change of sign between the two points");
   }
-  DEA_TRY(ctx, close_in(ctx, t, b));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, close_in(ctx, t, b));
 }
 
 dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_solid_continuation *t,

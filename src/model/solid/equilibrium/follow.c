@@ -497,9 +497,7 @@ static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
 {
   struct dea_solid *s = w->s;
   dea_status status = dea_solid_count_unstable(ctx, s, false, w->report);
-  if (status == DEA_OK && w->report->unstable_modes == 0) {
-    status = take_last_step(ctx, w);
-  }
+  status = status == DEA_OK && w->report->unstable_modes == 0 ? take_last_step(ctx, w) : status;
   *there = status == DEA_OK && w->report->unstable_modes == 0;
   if (*there) {
     w->report->load_error = dea_solid_update_loads(s);
@@ -535,9 +533,7 @@ dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double
   }
   s->found.predicted_fits = false;
   dea_status status = iterate_all(ctx, &w, there);
-  if (status == DEA_OK && *there) {
-    status = count(ctx, &w, there);
-  }
+  status = status == DEA_OK && *there ? count(ctx, &w, there) : status;
   dea_context_counters(ctx)->load_steps += status == DEA_OK && *there;
   dea_context_counters(ctx)->rejected_steps += !*there;
   if (status == DEA_OK && *there) {

@@ -115,10 +115,7 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
   *report = (struct dea_solid_report){.load_factor = 1};
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
-  if (report->unstable_modes > 0) {
-    DEA_TRY(ctx, descend_from(ctx, s, side, report));
-  }
-  return DEA_OK;
+  return DEA_CHAIN(ctx, report->unstable_modes > 0 ? descend_from(ctx, s, side, report) : DEA_OK);
 }
 
 /* Leaves an unstable equilibrium; where no way down is found it is the answer, and says so by its
@@ -145,8 +142,7 @@ static dea_status solve_pushed(struct dea_context *ctx, struct dea_solid *s, con
   }
   s->found.factor_fits = false;
   *report = (struct dea_solid_report){.load_factor = 1};
-  DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_equilibrate(ctx, s, report));
 }
 
 dea_status dea_solid_perturb(struct dea_context *ctx, struct dea_solid *s, const double *push_m,

@@ -131,8 +131,7 @@ static dea_status count_below(struct dea_context *ctx, struct eigen *f, double v
   struct dea_solid *s = f->solid;
   DEA_TRY(ctx, dea_solid_add_matrix(ctx, s->work.K, -value, f->B));
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, count));
-  DEA_TRY(ctx, dea_solid_add_matrix(ctx, s->work.K, value, f->B));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_add_matrix(ctx, s->work.K, value, f->B));
 }
 
 /* Whether the `count` lowest found are the lowest there are: there is a gap behind some of those
@@ -171,18 +170,14 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
     DEA_TRY(ctx, dea_solid_petsc(ctx, search_end(f, wanted), "EPSSolve"));
     sort(f);
     bool all = f->count >= count;
-    if (!below) {
-      DEA_TRY(ctx, certify(ctx, f, count, &all));
-    }
+    DEA_TRY(ctx, !below ? certify(ctx, f, count, &all) : DEA_OK);
     if (all) {
       return DEA_OK;
     }
     if (f->count == before) {
       break;
     }
-    if (!below) {
-      DEA_TRY(ctx, dea_solid_factor_any(ctx, f->solid));
-    }
+    DEA_TRY(ctx, !below ? dea_solid_factor_any(ctx, f->solid) : DEA_OK);
     wanted = below ? count - f->count : MAX_EXTRA + count / 2;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "only %d modes were found, and not all up to the %d-th",
@@ -277,13 +272,8 @@ static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_
   DEA_TRY_MEMORY(!dea_solid_allreduce_any(f->memory.failed));
   DEA_TRY(ctx, create_metric(ctx, f->solid, metric, &f->B));
   DEA_PETSC(ctx, VecDuplicateVecs(f->solid->work.right, f->capacity, &f->vectors));
-  if (unstable > 0) {
-    DEA_TRY(ctx, find_end(ctx, f, unstable, true));
-  }
-  if (count > unstable) {
-    DEA_TRY(ctx, find_end(ctx, f, count, false));
-  }
-  return DEA_OK;
+  DEA_TRY(ctx, unstable > 0 ? find_end(ctx, f, unstable, true) : DEA_OK);
+  return DEA_CHAIN(ctx, count > unstable ? find_end(ctx, f, count, false) : DEA_OK);
 }
 
 static void release(struct eigen *f)
@@ -312,12 +302,10 @@ static dea_status find_lowest(struct dea_context *ctx, struct dea_solid *s,
                     negative);
   }
   dea_status status = find_modes(ctx, &f, metric, negative, (int)count);
-  if (status == DEA_OK && metric == DEA_MODES_BY_MASS) {
-    status = refine(ctx, &f, count);
-  }
+  status = status == DEA_OK && metric == DEA_MODES_BY_MASS ? refine(ctx, &f, count) : status;
   status = status == DEA_OK ? hand_over(ctx, &f, count, dofs, value, vector) : status;
   release(&f);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *s,
@@ -325,16 +313,14 @@ dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *s,
                                   double *vector)
 {
   const size_t moves = 3 * s->problem.grid->node_count;
-  DEA_TRY(ctx, find_lowest(ctx, s, metric, count, moves, value, vector));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, find_lowest(ctx, s, metric, count, moves, value, vector));
 }
 
 dea_status dea_solid_modes_whole(struct dea_context *ctx, struct dea_solid *s,
                                  enum dea_mode_metric metric, size_t count, double *value,
                                  double *vector)
 {
-  DEA_TRY(ctx, find_lowest(ctx, s, metric, count, s->problem.dofs, value, vector));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, find_lowest(ctx, s, metric, count, s->problem.dofs, value, vector));
 }
 
 dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *value,
@@ -348,7 +334,7 @@ dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s,
   status = status == DEA_OK ? hand_over(ctx, &f, 1, 3 * s->problem.grid->node_count, value, vector)
                             : status;
   release(&f);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_solid_modes_below(struct dea_context *ctx, struct dea_solid *s,
@@ -359,10 +345,8 @@ dea_status dea_solid_modes_below(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_check(ctx, s));
   DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &below));
   dea_status status = create_metric(ctx, s, metric, &f.B);
-  if (status == DEA_OK && value != 0) {
-    status = count_below(ctx, &f, value, &below);
-  }
+  status = status == DEA_OK && value != 0 ? count_below(ctx, &f, value, &below) : status;
   release(&f);
   *count = (size_t)below;
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

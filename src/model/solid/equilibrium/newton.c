@@ -77,9 +77,7 @@ static dea_status raise_shift(struct dea_context *ctx, struct dea_solid *s, stru
   if (negative > o->shift_max_modes) {
     return DEA_OK;
   }
-  if (*L == NULL) {
-    DEA_TRY(ctx, dea_solid_create_laplace(ctx, s, L));
-  }
+  DEA_TRY(ctx, *L == NULL ? dea_solid_create_laplace(ctx, s, L) : DEA_OK);
   DEA_TRY(ctx, dea_solid_lowest_by_laplace(ctx, s, *L, negative, &lowest_Pa));
   if (lowest_Pa < 0) {
     d->shift_Pa = there - shift_margin * lowest_Pa;
@@ -123,7 +121,7 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
   Mat L = NULL;
   dea_status status = search_definite(ctx, s, d, there, &L);
   MatDestroy(&L);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* step = -K^-1 g with the factor that is there. */
@@ -132,8 +130,7 @@ static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
   for (size_t k = 0; k < s->problem.dofs; k++) {
     s->work.trial[k] = -s->work.g[k];
   }
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
 }
 
 void dea_solid_predict_tangent(struct dea_solid *s, const double *step)

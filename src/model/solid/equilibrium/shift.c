@@ -59,8 +59,7 @@ static dea_status begin(struct dea_context *ctx, struct lanczos *z, double *leng
   DEA_PETSC(ctx, VecRestoreArrayWrite(z->v[1], &x));
   DEA_PETSC(ctx, MatMult(z->L, z->v[1], z->Lv[1]));
   DEA_TRY(ctx, dea_solid_solve_rows(ctx, z->s, z->Lv[1], z->v[0]));
-  DEA_TRY(ctx, normalise(ctx, z, 0, length));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, normalise(ctx, z, 0, length));
 }
 
 /* v[k + 1] from v[k], with a[k] and b[k]. */
@@ -77,8 +76,7 @@ static dea_status step(struct dea_context *ctx, struct lanczos *z, int k)
     }
     DEA_PETSC(ctx, VecMAXPY(z->v[k + 1], k + 1, along, z->v));
   }
-  DEA_TRY(ctx, normalise(ctx, z, k + 1, &z->b[k]));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, normalise(ctx, z, k + 1, &z->b[k]));
 }
 
 /* What `count` steps say of `negative` eigenvalues: true where they are all there, and the lowest
@@ -138,5 +136,5 @@ dea_status dea_solid_lowest_by_laplace(struct dea_context *ctx, struct dea_solid
       VecDestroyVecs(z.steps + 1, vectors[i]);
     }
   }
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -518,9 +518,7 @@ static dea_status close_in(struct dea_context *ctx, struct search *a)
   if (a->arrived) {
     return DEA_OK;
   }
-  if (a->taut && last == DEA_E_NOT_CONVERGED) {
-    DEA_TRY(ctx, search_path(ctx, a));
-  }
+  DEA_TRY(ctx, a->taut && last == DEA_E_NOT_CONVERGED ? search_path(ctx, a) : DEA_OK);
   if (a->went_on || a->stop->kind == DEA_STOP_LIMIT) {
     return DEA_OK;
   }
@@ -553,9 +551,7 @@ static dea_status go(struct dea_context *ctx, struct search *a)
     if (a->arrived) {
       return DEA_OK;
     }
-    if (a->stop->kind == DEA_STOP_LIMIT) {
-      DEA_TRY(ctx, pass_limit(ctx, a, &on));
-    }
+    DEA_TRY(ctx, a->stop->kind == DEA_STOP_LIMIT ? pass_limit(ctx, a, &on) : DEA_OK);
     DEA_TRY(ctx, on ? DEA_OK
                     : dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "a limit point at %.6g kV",
                                1e-3 * a->stop->voltage_V));
@@ -607,7 +603,7 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
   dea_solid_saved_state_free(&a.limit);
   dea_solid_saved_state_free(&a.start);
   dea_arena_free(&memory);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 // States ------------------------------------------------------------------------------------------

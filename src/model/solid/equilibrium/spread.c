@@ -129,5 +129,5 @@ dea_status dea_solid_spread(struct dea_context *ctx, struct dea_solid *s,
   path->last_V = path->before_last_V; // the path has a bend of another kind
   dea_free(ctx, stiff);
   dea_free(ctx, held);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -337,5 +337,5 @@ dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid
     }
   }
   dea_arena_free(&c.memory);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

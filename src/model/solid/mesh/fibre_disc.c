@@ -490,8 +490,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *pl
   for (size_t i = 0; i + 1 < b->lines.circle_count; i++) {
     DEA_TRY(ctx, add_polars(ctx, b, i));
   }
-  DEA_TRY(ctx, spread(ctx, b, out));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, spread(ctx, b, out));
 }
 
 dea_status dea_fibre_disc_plane(struct dea_context *ctx, const struct dea_fibre_disc *plate,
@@ -502,7 +501,7 @@ dea_status dea_fibre_disc_plane(struct dea_context *ctx, const struct dea_fibre_
   DEA_TRY_MEMORY(b != NULL);
   dea_status status = build(ctx, plate, like, b, out);
   dea_free(ctx, b);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* ---- supports ---- */

@@ -599,8 +599,7 @@ static dea_status classify(struct dea_context *ctx, const struct dea_gmsh_plan *
   dea_free(ctx, within);
   dea_free(ctx, before);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, check_groups(ctx, mesh));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, check_groups(ctx, mesh));
 }
 
 static dea_status add_layers(struct dea_context *ctx, const struct dea_gmsh_plan *plan,

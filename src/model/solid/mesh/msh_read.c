@@ -461,9 +461,7 @@ static dea_status read_sections(struct reader *r)
     dea_status (*read)(struct reader *) = k < KNOWN ? sections[k].read[r->version == 4] : NULL;
     r->section = k < KNOWN ? sections[k].name : "a section";
     r->at += length;
-    if (read != NULL) {
-      DEA_TRY(r->ctx, read(r));
-    }
+    DEA_TRY(r->ctx, read != NULL ? read(r) : DEA_OK);
     DEA_TRY(r->ctx, end_section(r, name, length, read == NULL));
   }
   return DEA_OK;
@@ -888,7 +886,7 @@ dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *
   dea_free(ctx, r.elements.data);
   dea_free(ctx, r.physicals.data);
   dea_free(ctx, r.members.data);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_msh_read(struct dea_context *ctx, const char *file, double unit_m,

@@ -149,5 +149,5 @@ dea_status dea_msh_write(struct dea_context *ctx, const struct dea_msh_groups *g
   dea_status status =
       text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
   dea_text_free(&text);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

@@ -122,8 +122,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double high
       r->push[k] += r->shape[k * r->dofs + i] * force[i];
     }
   }
-  DEA_TRY(ctx, find_rest(ctx, s, r, force));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, find_rest(ctx, s, r, force));
 }
 
 dea_status dea_solid_response_check(struct dea_context *ctx, const struct dea_solid *s)

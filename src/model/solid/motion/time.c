@@ -210,8 +210,7 @@ static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
   }
   memcpy(t->first, s->state.u, t->count * sizeof *t->first);
   DEA_TRY(ctx, find_forces(ctx, t, t->F));
-  DEA_TRY(ctx, find_stored(ctx, t, &t->first_J, &t->capacitance_F, &t->charged));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, find_stored(ctx, t, &t->first_J, &t->capacitance_F, &t->charged));
 }
 
 dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *solid,
@@ -399,18 +398,13 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
   if (t->variables != NULL) {
     dea_internal_variables_begin(t->variables, s, h);
   }
-  if (t->start) {
-    DEA_TRY(ctx, find_acceleration(ctx, t, h, report));
-  }
-  if (t->inertial) {
-    DEA_TRY(ctx, set_inertia(ctx, t, h));
-  }
+  DEA_TRY(ctx, t->start ? find_acceleration(ctx, t, h, report) : DEA_OK);
+  DEA_TRY(ctx, t->inertial ? set_inertia(ctx, t, h) : DEA_OK);
   t->start_next = false;
   s->found.factor_fits =
       s->found.factor_fits && fabs(log(h / t->step_s)) < 0.5; // at first t->step_s is 0
   t->step_s = h;
-  DEA_TRY(ctx, solve_step(ctx, t, voltage_V, t->own_V, report));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, solve_step(ctx, t, voltage_V, t->own_V, report));
 }
 
 dea_status dea_solid_time_again(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
@@ -419,8 +413,7 @@ dea_status dea_solid_time_again(struct dea_context *ctx, struct dea_solid_time *
   if (t->inertial && !(t->step_s > 0)) {
     return dea_solid_time_jump(ctx, t, voltage_V, report);
   }
-  DEA_TRY(ctx, solve_step(ctx, t, voltage_V, t->own_V, report));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, solve_step(ctx, t, voltage_V, t->own_V, report));
 }
 
 void dea_solid_time_reject(struct dea_solid_time *time)

@@ -64,8 +64,7 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
   s->state.internal_variables = NULL;
   dea_internal_variables_destroy(ctx, variables);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, dea_solid_add_matrix(ctx, *out, -1, y->part[0]));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_add_matrix(ctx, *out, -1, y->part[0]));
 }
 
 /* Without branches: what they add makes a film that buckles only slow to do so. */
@@ -264,8 +263,7 @@ static dea_status set_right(struct dea_context *ctx, struct system *y, double *f
 {
   DEA_TRY(ctx, dea_solid_to_vector(ctx, y->solid, force, y->solid->work.right));
   DEA_PETSC(ctx, VecSet(y->right, 0));
-  DEA_TRY(ctx, interleave(ctx, y->solid->work.right, y->right, 0, false));
-  return DEA_OK;
+  return DEA_CHAIN(ctx, interleave(ctx, y->solid->work.right, y->right, 0, false));
 }
 
 /* Who takes the answers. */
@@ -341,5 +339,5 @@ dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *s,
   VecDestroy(&y.right);
   VecDestroy(&y.answer);
   s->found.factor_fits = s->found.predicted_fits = false;
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }

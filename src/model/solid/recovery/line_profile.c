@@ -176,5 +176,5 @@ dea_status dea_line_profile(struct dea_context *ctx, const struct dea_field_mesh
   }
   dea_status status = fill(ctx, &w, plus, minus, columns, out);
   dea_arena_free(&w.memory);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, status);
 }
