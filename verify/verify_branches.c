@@ -155,7 +155,7 @@ static void push_over(struct dea_solid_report *report)
   const struct dea_film_band film = {0, device->film_thickness_m};
   bool moved;
   verify_ok(ctx,
-            dea_buckling_branch_take(ctx, solid, grid, &film, DEA_BRANCH_FIBRES, report, &moved));
+            dea_buckling_branch_select(ctx, solid, grid, &film, DEA_BRANCH_FIBRES, report, &moved));
   verify_absolute("second state for the path", moved, 1, 0);
 }
 

@@ -124,7 +124,7 @@ static void make_rows(const struct subject *s, size_t t, struct data *d)
     material.branch_count = 1;
     material.branches[0] = (struct dea_branch){s->truth[1], s->truth[2]};
     verify_ok(ctx, dea_coupon_follow(&d->memory, series->time_s, s->from_s, &series->coupon));
-    verify_ok(ctx, dea_coupon_shares_make(&d->memory, &series->coupon, 1, &shares));
+    verify_ok(ctx, dea_coupon_shares_build(&d->memory, &series->coupon, 1, &shares));
   }
   verify_ok(ctx, dea_coupon_stress(&material, &series->coupon, held ? &shares : NULL, d->clean[t]));
   for (size_t i = 0; i < s->rows; i++) {

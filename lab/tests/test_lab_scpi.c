@@ -620,19 +620,19 @@ TEST(test_late_samples)
   static const double volts[] = {0, 1, 2, 3, 4};
   struct dea_timed_output o = {.rate_Hz = 100, .queue_s = 0.25, .behind_s = 1};
   assert_int_equal(dea_timed_begin(ctx, &o), DEA_OK);
-  assert_int_equal(dea_timed_put(ctx, &o, volts, 5, NULL, NULL), DEA_OK);
+  assert_int_equal(dea_timed_write(ctx, &o, volts, 5, NULL, NULL), DEA_OK);
   dea_timed_start(&o, 0);
-  assert_int_equal(dea_timed_take(ctx, &o, 0.011), DEA_OK); // two of them
+  assert_int_equal(dea_timed_read(ctx, &o, 0.011), DEA_OK); // two of them
   o.turned_s = 0.2;
-  assert_int_equal(dea_timed_take(ctx, &o, 0.021 + 0.2), DEA_OK); // 0.2 s late
+  assert_int_equal(dea_timed_read(ctx, &o, 0.021 + 0.2), DEA_OK); // 0.2 s late
   o = (struct dea_timed_output){
       .rate_Hz = 100, .queue_s = 0.25, .behind_s = 1, .queue = o.queue, .capacity = o.capacity};
   o.clock_s = o.waiting_s = NAN;
-  assert_int_equal(dea_timed_put(ctx, &o, volts, 5, NULL, NULL), DEA_OK);
+  assert_int_equal(dea_timed_write(ctx, &o, volts, 5, NULL, NULL), DEA_OK);
   dea_timed_start(&o, 0);
-  assert_int_equal(dea_timed_take(ctx, &o, 0.011), DEA_OK);
+  assert_int_equal(dea_timed_read(ctx, &o, 0.011), DEA_OK);
   o.turned_s = 0.42;
-  assert_message(dea_timed_take(ctx, &o, 0.42), DEA_E_INTERLOCK, "longer than the queue");
+  assert_message(dea_timed_read(ctx, &o, 0.42), DEA_E_INTERLOCK, "longer than the queue");
   dea_timed_end(ctx, &o);
 }
 

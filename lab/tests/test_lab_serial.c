@@ -3,7 +3,7 @@
 // ctest: slow
 #include "emulator.h"
 #include "failing_allocator.h"
-#include "instrument/asking.h"
+#include "instrument/poll_schedule.h"
 #include "instrument/serial.h"
 
 #include "message_fixture.h"
@@ -383,16 +383,17 @@ TEST(test_wrong_keys)
 
 TEST(test_asking)
 {
-  struct dea_asking a = {.count = 2, .interval_s = 1, .timeout_s = 5};
+  struct dea_poll_schedule a = {.count = 2, .interval_s = 1, .timeout_s = 5};
   double next_s;
-  dea_asking_start(&a, 10);
-  assert_true(dea_asking_next(&a, 10, &next_s) && a.reading == 0 && next_s == 15);
-  assert_true(dea_asking_next(&a, 10.2, &next_s) && a.reading == 1);
-  assert_true(!dea_asking_next(&a, 10.5, &next_s) && next_s == 11);
-  assert_true(dea_asking_next(&a, 14, &next_s) && a.reading == 0); // late: not for what was missed
-  assert_true(dea_asking_next(&a, 14, &next_s) && a.reading == 1);
-  assert_true(dea_asking_next(&a, 14, &next_s) && dea_asking_next(&a, 14, &next_s));
-  assert_false(dea_asking_next(&a, 14.5, &next_s));
+  dea_poll_schedule_start(&a, 10);
+  assert_true(dea_poll_schedule_next(&a, 10, &next_s) && a.reading == 0 && next_s == 15);
+  assert_true(dea_poll_schedule_next(&a, 10.2, &next_s) && a.reading == 1);
+  assert_true(!dea_poll_schedule_next(&a, 10.5, &next_s) && next_s == 11);
+  assert_true(dea_poll_schedule_next(&a, 14, &next_s) &&
+              a.reading == 0); // late: not for what was missed
+  assert_true(dea_poll_schedule_next(&a, 14, &next_s) && a.reading == 1);
+  assert_true(dea_poll_schedule_next(&a, 14, &next_s) && dea_poll_schedule_next(&a, 14, &next_s));
+  assert_false(dea_poll_schedule_next(&a, 14.5, &next_s));
 }
 
 TESTS(context_set_up, context_tear_down)

@@ -117,23 +117,23 @@ TEST(test_asked_for)
   assert_int_equal(dea_supply_open(ctx, folder, address, &one), DEA_OK);
   assert_int_equal(dea_supply_leave(ctx, &one, "armed by the first"), DEA_OK);
   assert_false(dea_supply_is_asked(&one));
-  assert_int_equal(dea_supply_ask(ctx, folder, address, 0, &other), DEA_E_INTERLOCK);
+  assert_int_equal(dea_supply_request(ctx, folder, address, 0, &other), DEA_E_INTERLOCK);
   assert_non_null(strstr(dea_context_message(ctx), "armed by the first"));
   assert_non_null(strstr(other.left, "armed by the first"));
   assert_true(other.file == -1 && dea_supply_is_asked(&one));
   dea_context_clear(ctx);
   assert_int_equal(dea_supply_leave(ctx, &other, ""), DEA_OK); // changes nothing
-  assert_int_equal(dea_supply_ask(ctx, folder, address, 0, &third),
+  assert_int_equal(dea_supply_request(ctx, folder, address, 0, &third),
                    DEA_E_INTERLOCK); // one at a time
   dea_context_clear(ctx);
   dea_supply_close(&third);
   assert_true(dea_supply_is_asked(&one));
   dea_supply_close(&other);
   assert_false(dea_supply_is_asked(&one));
-  assert_true(dea_supply_give(&one, 1)); // nobody wants it any more
+  assert_true(dea_supply_release(&one, 1)); // nobody wants it any more
   assert_non_null(strstr(one.left, "armed by the first"));
   dea_supply_close(&one);
-  assert_int_equal(dea_supply_ask(ctx, folder, address, 0, &other), DEA_OK);
+  assert_int_equal(dea_supply_request(ctx, folder, address, 0, &other), DEA_OK);
   assert_int_equal(dea_supply_leave(ctx, &other, ""), DEA_OK);
   dea_supply_close(&other);
 }
@@ -149,7 +149,7 @@ TEST(test_given_away)
   assert_true(child >= 0);
   if (child == 0) {
     dea_supply_close(&one);
-    bool good = dea_supply_ask(ctx, folder, address, 10, &other) == DEA_OK &&
+    bool good = dea_supply_request(ctx, folder, address, 10, &other) == DEA_OK &&
                 dea_supply_leave(ctx, &other, "") == DEA_OK;
     usleep(200000);
     _exit(good ? 0 : 1);
@@ -157,12 +157,13 @@ TEST(test_given_away)
   while (!dea_supply_is_asked(&one)) {
     usleep(1000);
   }
-  assert_true(dea_supply_give(&one, 10));
+  assert_true(dea_supply_release(&one, 10));
   int status = 1;
   assert_int_equal(waitpid(child, &status, 0), child);
   assert_int_equal(status, 0);
   assert_string_equal(one.left, "");
-  assert_int_equal(dea_supply_ask(ctx, folder, address, 0, &other), DEA_E_INTERLOCK); // it has it
+  assert_int_equal(dea_supply_request(ctx, folder, address, 0, &other),
+                   DEA_E_INTERLOCK); // it has it
   dea_context_clear(ctx);
   dea_supply_close(&other);
   dea_supply_close(&one);

@@ -175,8 +175,8 @@ dea_status dea_actuator_mesh(dea_context *ctx, dea_actuator *actuator, const dea
   DEA_TRY(ctx->inner, begin(ctx, actuator));
   DEA_TRY(ctx->inner,
           dea_model_fields(ctx->inner, actuator->type, actuator->model, DEA_FIELDS_VOLUME, &mesh));
-  DEA_TRY(ctx->inner, api_mesh_make(ctx->inner, actuator->type->name, actuator->point.voltage_V,
-                                    mesh, true, &actuator->mesh));
+  DEA_TRY(ctx->inner, api_mesh_create(ctx->inner, actuator->type->name, actuator->point.voltage_V,
+                                      mesh, true, &actuator->mesh));
   *out = &actuator->mesh->shown;
   return DEA_OK;
 }

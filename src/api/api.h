@@ -98,8 +98,8 @@ void *api_grow(struct dea_context *ctx, void *items, size_t count, size_t *capac
 dea_status api_design_build(struct dea_context *ctx, const dea_design *design,
                             struct dea_design **inner, struct dea_device **device);
 /* A design of a text and of what was set, "key=value" a line (NULL: nothing). */
-dea_status api_design_make(dea_context *ctx, const char *name, const char *text, const char *set,
-                           dea_design **out);
+dea_status api_design_create(dea_context *ctx, const char *name, const char *text, const char *set,
+                             dea_design **out);
 /* Settings as overrides; owned by the caller, the texts lent. */
 struct dea_override *api_overrides(struct dea_context *ctx, const struct api_setting *settings,
                                    size_t count);
@@ -112,11 +112,11 @@ dea_status api_model_find(dea_context *ctx, const char *name, const struct dea_m
 /* Fills the list of arrays and texts of a result. */
 dea_status api_result_list(dea_result *result);
 /* A handle for what was computed; takes design, device and inner (or run), also on failure. */
-dea_status api_result_make(dea_context *ctx, struct dea_result_handle contents, dea_result **out);
+dea_status api_result_create(dea_context *ctx, struct dea_result_handle contents, dea_result **out);
 
 /* The public form of a mesh; name: copied. inner: lent, or owned if `own`. */
-dea_status api_mesh_make(struct dea_context *ctx, const char *name, double voltage_V,
-                         struct dea_field_mesh *inner, bool own, struct api_mesh **out);
+dea_status api_mesh_create(struct dea_context *ctx, const char *name, double voltage_V,
+                           struct dea_field_mesh *inner, bool own, struct api_mesh **out);
 void api_mesh_free(struct dea_context *ctx, struct api_mesh *mesh);
 
 /* Adds the pictures of a fragment of a report as one SVG. */

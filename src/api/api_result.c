@@ -248,8 +248,8 @@ static void add_meshes(struct filling *f)
     const struct dea_surface_record *record = &inner->surfaces[i];
     char name[2 * DEA_NAME_SIZE];
     snprintf(name, sizeof name, "%s/surface/%04zu", record->model, record->point);
-    f->status = api_mesh_make(result->ctx->inner, name, record->voltage_V, record->mesh, false,
-                              &result->meshes[i]);
+    f->status = api_mesh_create(result->ctx->inner, name, record->voltage_V, record->mesh, false,
+                                &result->meshes[i]);
     result->mesh_count += f->status == DEA_OK;
   }
 }
@@ -303,7 +303,7 @@ void dea_result_free(dea_result *result)
   dea_free(ctx, result);
 }
 
-dea_status api_result_make(dea_context *ctx, struct dea_result_handle contents, dea_result **out)
+dea_status api_result_create(dea_context *ctx, struct dea_result_handle contents, dea_result **out)
 {
   struct dea_context *inner = ctx->inner;
   dea_result *result = dea_alloc(inner, 1, sizeof *result);
@@ -488,7 +488,7 @@ dea_status dea_result_open(dea_context *ctx, const char *path, dea_result **out)
     dea_run_destroy(inner, contents.run);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
   }
-  return DEA_CHAIN(inner, api_result_make(ctx, contents, out));
+  return DEA_CHAIN(inner, api_result_create(ctx, contents, out));
 }
 
 dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_design **out)
@@ -501,6 +501,6 @@ dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_des
   }
   return DEA_CHAIN(
       ctx->inner,
-      api_design_make(ctx, result->run != NULL ? result->run->design_file : result->design->file,
-                      p->input, p->overrides, out));
+      api_design_create(ctx, result->run != NULL ? result->run->design_file : result->design->file,
+                        p->input, p->overrides, out));
 }

@@ -52,7 +52,7 @@ static dea_status find_law(dea_context *ctx, const char *name, const struct dea_
   return DEA_OK;
 }
 
-static dea_status take_law(dea_context *ctx, const dea_part *part, struct dea_part_spec *out)
+static dea_status read_law(dea_context *ctx, const dea_part *part, struct dea_part_spec *out)
 {
   DEA_TRY(ctx->inner, find_law(ctx, part->law, &out->law));
   if (part->parameter_count != out->law->param_count) {
@@ -74,7 +74,7 @@ static dea_status take_law(dea_context *ctx, const dea_part *part, struct dea_pa
   return DEA_OK;
 }
 
-static dea_status take_part(dea_context *ctx, const dea_part *given, size_t number,
+static dea_status read_part(dea_context *ctx, const dea_part *given, size_t number,
                             struct dea_part_spec *out)
 {
   dea_part part = DEA_PART_INIT;
@@ -96,7 +96,7 @@ static dea_status take_part(dea_context *ctx, const dea_part *given, size_t numb
                                 .channel_above = part.channel_above,
                                 .channel_below = part.channel_below};
   if (part.law != NULL) {
-    return take_law(ctx, &part, out);
+    return read_law(ctx, &part, out);
   }
   if (!(part.young_modulus_Pa > 0) || !(part.poisson_ratio > -1 && part.poisson_ratio < 0.49)) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT,
@@ -108,7 +108,7 @@ static dea_status take_part(dea_context *ctx, const dea_part *given, size_t numb
 }
 
 /* A plane mesh through plies. ones, fills: [ply_count], [fill_count], of the caller. */
-static dea_status take_plies(dea_context *ctx, const dea_solid_options *o, size_t *ones,
+static dea_status read_plies(dea_context *ctx, const dea_solid_options *o, size_t *ones,
                              struct dea_fill_spec *fills, struct dea_solid_spec *out)
 {
   if (o->ply_count == 0 || o->ply_thickness_m == NULL || o->fill_count == 0 || o->fills == NULL) {
@@ -136,7 +136,7 @@ static dea_status take_plies(dea_context *ctx, const dea_solid_options *o, size_
 }
 
 /* What the module is asked for; parts: [part_count], of the caller. */
-static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
+static dea_status read_options(dea_context *ctx, const dea_solid_options *o,
                                struct dea_part_spec *parts, struct dea_solid_spec *out)
 {
   bool box = o->msh_file == NULL && o->elements[0] > 0 && o->elements[1] > 0 && o->elements[2] > 0;
@@ -170,13 +170,13 @@ static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
     out->part_of = o->part_of;
   }
   for (size_t i = 0; i < o->part_count; i++) {
-    DEA_TRY(ctx->inner, take_part(ctx, o->parts[i], i, &parts[i]));
+    DEA_TRY(ctx->inner, read_part(ctx, o->parts[i], i, &parts[i]));
   }
   return DEA_OK;
 }
 
 /* bodies: [body_count] places and copies that those lend from, of the caller. */
-static dea_status take_bodies(dea_context *ctx, const dea_solid_options *o, dea_body *copies,
+static dea_status read_bodies(dea_context *ctx, const dea_solid_options *o, dea_body *copies,
                               struct dea_body_spec *bodies, struct dea_solid_spec *out)
 {
   static const dea_body all = DEA_BODY_INIT;
@@ -220,10 +220,10 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
   struct dea_body_spec *bodies = dea_alloc(inner, all.body_count, sizeof *bodies);
   bool enough = solid != NULL && parts != NULL && fills != NULL && ply_elements != NULL &&
                 copies != NULL && bodies != NULL;
-  dea_status status = enough ? take_options(ctx, &all, parts, &spec) : DEA_E_MEMORY;
-  status = status == DEA_OK ? take_bodies(ctx, &all, copies, bodies, &spec) : status;
+  dea_status status = enough ? read_options(ctx, &all, parts, &spec) : DEA_E_MEMORY;
+  status = status == DEA_OK ? read_bodies(ctx, &all, copies, bodies, &spec) : status;
   if (status == DEA_OK && all.msh_file != NULL) {
-    status = take_plies(ctx, &all, ply_elements, fills, &spec);
+    status = read_plies(ctx, &all, ply_elements, fills, &spec);
   }
   status = status == DEA_OK ? dea_solid_access_open(inner, &solid->access) : status;
   status = status == DEA_OK ? DEA_SOLID_IN_TURN(solid->access->create(inner, &spec, &solid->object))
@@ -462,7 +462,7 @@ dea_status dea_solid_mesh(dea_context *ctx, dea_solid *solid, const dea_mesh **o
   solid->mesh = NULL;
   (void)solid->access->number(solid->object, "voltage_V", &voltage_V);
   DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->mesh(ctx->inner, solid->object, &mesh)));
-  DEA_TRY(ctx->inner, api_mesh_make(ctx->inner, "solid", voltage_V, mesh, true, &solid->mesh));
+  DEA_TRY(ctx->inner, api_mesh_create(ctx->inner, "solid", voltage_V, mesh, true, &solid->mesh));
   *out = &solid->mesh->shown;
   return DEA_OK;
 }

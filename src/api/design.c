@@ -46,7 +46,7 @@ dea_status api_design_build(struct dea_context *ctx, const dea_design *design,
 }
 
 /* Puts a newly read form into the place of the one that is there. Takes inner. */
-static dea_status take_inner(struct dea_context *ctx, dea_design *design, struct dea_design *inner)
+static dea_status read_inner(struct dea_context *ctx, dea_design *design, struct dea_design *inner)
 {
   const struct dea_listing *listing = &inner->values;
   dea_value *values = dea_alloc(ctx, listing->count, sizeof *values);
@@ -99,8 +99,8 @@ void dea_design_free(dea_design *design)
 }
 
 /* A design of these bytes (copied) and settings (taken, also on failure). */
-static dea_status make(dea_context *owner, const char *name, const char *bytes, size_t length,
-                       struct api_setting *settings, size_t setting_count, dea_design **out)
+static dea_status build(dea_context *owner, const char *name, const char *bytes, size_t length,
+                        struct api_setting *settings, size_t setting_count, dea_design **out)
 {
   struct dea_context *ctx = owner->inner;
   dea_design *design = dea_alloc(ctx, 1, sizeof *design);
@@ -121,7 +121,7 @@ static dea_status make(dea_context *owner, const char *name, const char *bytes, 
   if (design->name != NULL && design->bytes != NULL) {
     status = read_with(ctx, design, settings, setting_count, &inner);
   }
-  status = status == DEA_OK ? take_inner(ctx, design, inner) : status;
+  status = status == DEA_OK ? read_inner(ctx, design, inner) : status;
   if (status != DEA_OK) {
     dea_design_free(design);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -137,7 +137,7 @@ dea_status dea_design_open(dea_context *ctx, const char *path, dea_design **out)
   *out = NULL;
   api_begin(ctx);
   DEA_TRY(ctx->inner, dea_file_read(ctx->inner, path, DEA_YAML_SIZE_MAX, &bytes, &length));
-  dea_status status = make(ctx, path, bytes, length, NULL, 0, out);
+  dea_status status = build(ctx, path, bytes, length, NULL, 0, out);
   dea_free(ctx->inner, bytes);
   return status;
 }
@@ -147,7 +147,7 @@ dea_status dea_design_parse(dea_context *ctx, const char *text, const char *name
   *out = NULL;
   api_begin(ctx);
   return DEA_CHAIN(ctx->inner,
-                   make(ctx, name != NULL ? name : "design", text, strlen(text), NULL, 0, out));
+                   build(ctx, name != NULL ? name : "design", text, strlen(text), NULL, 0, out));
 }
 
 /* Number of lines of the form "key=value" in a text; their places into settings, if not NULL:
@@ -171,8 +171,8 @@ static size_t split_settings(struct dea_context *ctx, const char *text,
   return count;
 }
 
-dea_status api_design_make(dea_context *ctx, const char *name, const char *text, const char *set,
-                           dea_design **out)
+dea_status api_design_create(dea_context *ctx, const char *name, const char *text, const char *set,
+                             dea_design **out)
 {
   bool failed = false;
   size_t count = split_settings(ctx->inner, set, NULL, &failed);
@@ -184,7 +184,7 @@ dea_status api_design_make(dea_context *ctx, const char *name, const char *text,
     free_settings(ctx->inner, settings, count);
     return DEA_E_MEMORY;
   }
-  return DEA_CHAIN(ctx->inner, make(ctx, name, text, strlen(text), settings, count, out));
+  return DEA_CHAIN(ctx->inner, build(ctx, name, text, strlen(text), settings, count, out));
 }
 
 /* Where a key is among settings; count when it is not there. */
@@ -239,7 +239,7 @@ dea_status dea_design_copy(dea_context *ctx, const dea_design *design, dea_desig
   api_begin(ctx);
   DEA_TRY(ctx->inner, join_settings(ctx->inner, design, NULL, NULL, 0, &settings, &count));
   return DEA_CHAIN(ctx->inner,
-                   make(ctx, design->name, design->bytes, design->length, settings, count, out));
+                   build(ctx, design->name, design->bytes, design->length, settings, count, out));
 }
 
 dea_status dea_design_set_all(dea_context *ctx, dea_design *design, const char *const *keys,
@@ -253,7 +253,7 @@ dea_status dea_design_set_all(dea_context *ctx, dea_design *design, const char *
   DEA_TRY(inner_ctx,
           join_settings(inner_ctx, design, keys, values, count, &settings, &setting_count));
   dea_status status = read_with(inner_ctx, design, settings, setting_count, &inner);
-  status = status == DEA_OK ? take_inner(inner_ctx, design, inner) : status;
+  status = status == DEA_OK ? read_inner(inner_ctx, design, inner) : status;
   if (status != DEA_OK) {
     free_settings(inner_ctx, settings, setting_count);
     return dea_fail_chain(inner_ctx, status, __func__, __FILE__, __LINE__);

@@ -32,8 +32,8 @@ static void show_fields(struct api_mesh *mesh)
   }
 }
 
-dea_status api_mesh_make(struct dea_context *ctx, const char *name, double voltage_V,
-                         struct dea_field_mesh *inner, bool own, struct api_mesh **out)
+dea_status api_mesh_create(struct dea_context *ctx, const char *name, double voltage_V,
+                           struct dea_field_mesh *inner, bool own, struct api_mesh **out)
 {
   struct api_mesh *mesh = dea_alloc(ctx, 1, sizeof *mesh);
   *out = mesh;
@@ -87,8 +87,8 @@ dea_status dea_result_mesh(dea_context *ctx, dea_result *result, const char *nam
     if (mesh->whole == NULL) {
       struct dea_field_mesh *all;
       DEA_TRY(ctx->inner, dea_field_mesh_whole(ctx->inner, mesh->inner, &all));
-      DEA_TRY(ctx->inner, api_mesh_make(ctx->inner, mesh->name, mesh->shown.voltage_V, all, true,
-                                        &mesh->whole));
+      DEA_TRY(ctx->inner, api_mesh_create(ctx->inner, mesh->name, mesh->shown.voltage_V, all, true,
+                                          &mesh->whole));
     }
     mesh = mesh->whole;
   }

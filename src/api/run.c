@@ -101,6 +101,6 @@ dea_status dea_run(dea_context *ctx, const dea_design *design, const dea_run_opt
     dea_design_destroy(inner, contents.design);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
   }
-  dea_status made = api_result_make(ctx, contents, out);
+  dea_status made = api_result_create(ctx, contents, out);
   return made != DEA_OK ? made : status;
 }

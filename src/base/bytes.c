@@ -39,7 +39,7 @@ void dea_bytes_add(struct dea_bytes *bytes, const void *data, size_t length)
   }
 }
 
-static void put(char *to, uint64_t value, size_t length)
+static void store_bytes(char *to, uint64_t value, size_t length)
 {
   for (size_t i = 0; i < length; i++) {
     to[i] = (char)(unsigned char)(value >> (8 * i) & 0xff);
@@ -50,7 +50,7 @@ static void add_word(struct dea_bytes *bytes, uint64_t value, size_t length)
 {
   char *to = extend(bytes, length);
   if (to != NULL) {
-    put(to, value, length);
+    store_bytes(to, value, length);
   }
 }
 
@@ -86,7 +86,7 @@ void dea_bytes_add_f64(struct dea_bytes *bytes, double value)
 void dea_bytes_set_u64(struct dea_bytes *bytes, size_t at, uint64_t value)
 {
   if (!bytes->failed && at + 8 <= bytes->length) {
-    put(bytes->data + at, value, 8);
+    store_bytes(bytes->data + at, value, 8);
   }
 }
 

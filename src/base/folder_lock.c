@@ -53,7 +53,8 @@ static void sign(int file)
   }
 }
 
-static dea_status take(struct dea_context *ctx, const char *directory, struct dea_folder_lock *lock)
+static dea_status acquire(struct dea_context *ctx, const char *directory,
+                          struct dea_folder_lock *lock)
 {
   for (;;) {
     lock->file = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
@@ -89,7 +90,7 @@ dea_status dea_folder_lock(struct dea_context *ctx, const char *directory,
   DEA_TRY_MEMORY(lock != NULL);
   lock->file = -1;
   lock->path = dea_path_join(ctx, directory, DEA_FOLDER_LOCK_FILE);
-  dea_status status = lock->path != NULL ? take(ctx, directory, lock) : DEA_E_MEMORY;
+  dea_status status = lock->path != NULL ? acquire(ctx, directory, lock) : DEA_E_MEMORY;
   if (status != DEA_OK) {
     release(ctx, lock);
     return status;

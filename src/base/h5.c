@@ -24,7 +24,7 @@ void dea_h5_end(struct h5 *h)
 }
 
 /* Takes the first (innermost) description of an error stack. */
-static herr_t take_description(unsigned n, const H5E_error2_t *error, void *user)
+static herr_t read_description(unsigned n, const H5E_error2_t *error, void *user)
 {
   (void)n;
   const char **text = user;
@@ -40,7 +40,7 @@ void dea_h5_fail(struct h5 *h, const char *what)
     return;
   }
   const char *text = NULL;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_description, (void *)&text);
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, read_description, (void *)&text);
   h->status = dea_fail(h->ctx, DEA_E_IO, "%s %s%s%s", what, h->path, text != NULL ? ": " : "",
                        text != NULL ? text : "");
 }
@@ -55,7 +55,7 @@ static hid_t checked(struct h5 *h, hid_t id, const char *what)
   return id;
 }
 
-hid_t dea_h5_file_make(struct h5 *h)
+hid_t dea_h5_file_create(struct h5 *h)
 {
   hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, 1 << 18, false);
@@ -174,10 +174,10 @@ hid_t dea_h5_file_open(struct h5 *h, bool written)
 hid_t dea_h5_group_get(struct h5 *h, hid_t parent, const char *name)
 {
   return dea_h5_has(h, parent, name) ? dea_h5_group_open(h, parent, name)
-                                     : dea_h5_group_make(h, parent, name);
+                                     : dea_h5_group_create(h, parent, name);
 }
 
-hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name)
+hid_t dea_h5_group_create(struct h5 *h, hid_t parent, const char *name)
 {
   if (h->status != DEA_OK) {
     return H5I_INVALID_HID;
@@ -218,8 +218,8 @@ static hid_t text_type(size_t size, H5T_cset_t characters)
   return type;
 }
 
-static void put_scalar(struct h5 *h, hid_t object, const char *name, hid_t memory_type,
-                       hid_t file_type, const void *value)
+static void write_scalar(struct h5 *h, hid_t object, const char *name, hid_t memory_type,
+                         hid_t file_type, const void *value)
 {
   if (h->status != DEA_OK) {
     return;
@@ -233,26 +233,26 @@ static void put_scalar(struct h5 *h, hid_t object, const char *name, hid_t memor
   dea_h5_close(space);
 }
 
-void dea_h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text)
+void dea_h5_write_text(struct h5 *h, hid_t object, const char *name, const char *text)
 {
   const char *value = text != NULL ? text : "";
   hid_t type = text_type(strlen(value) + 1, H5T_CSET_UTF8);
-  put_scalar(h, object, name, type, type, value);
+  write_scalar(h, object, name, type, type, value);
   dea_h5_close(type);
 }
 
-void dea_h5_put_int(struct h5 *h, hid_t object, const char *name, long long value)
+void dea_h5_write_int(struct h5 *h, hid_t object, const char *name, long long value)
 {
-  put_scalar(h, object, name, H5T_NATIVE_LLONG, H5T_STD_I64LE, &value);
+  write_scalar(h, object, name, H5T_NATIVE_LLONG, H5T_STD_I64LE, &value);
 }
 
-void dea_h5_put_real(struct h5 *h, hid_t object, const char *name, double value)
+void dea_h5_write_real(struct h5 *h, hid_t object, const char *name, double value)
 {
-  put_scalar(h, object, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, &value);
+  write_scalar(h, object, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, &value);
 }
 
-static hid_t make_dataset(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
-                          hid_t file_type, hid_t space, const void *values)
+static hid_t create_dataset(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
+                            hid_t file_type, hid_t space, const void *values)
 {
   hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_obj_track_times(properties, false); // the same result gives the same bytes
@@ -264,18 +264,18 @@ static hid_t make_dataset(struct h5 *h, hid_t group, const char *name, hid_t mem
   return set;
 }
 
-void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
-                      hid_t file_type, size_t count, const void *values, const char *unit,
-                      const char *meaning)
+void dea_h5_write_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
+                        hid_t file_type, size_t count, const void *values, const char *unit,
+                        const char *meaning)
 {
   if (h->status != DEA_OK) {
     return;
   }
   hsize_t length = count;
   hid_t space = H5Screate_simple(1, &length, NULL);
-  hid_t set = make_dataset(h, group, name, memory_type, file_type, space, values);
-  dea_h5_put_text(h, set, "unit", unit);
-  dea_h5_put_text(h, set, "meaning", meaning);
+  hid_t set = create_dataset(h, group, name, memory_type, file_type, space, values);
+  dea_h5_write_text(h, set, "unit", unit);
+  dea_h5_write_text(h, set, "meaning", meaning);
   dea_h5_close(set);
   dea_h5_close(space);
 }
@@ -308,15 +308,15 @@ void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to)
   }
 }
 
-void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text)
+void dea_h5_write_long_text(struct h5 *h, hid_t group, const char *name, const char *text)
 {
   if (h->status != DEA_OK || text == NULL) {
     return;
   }
   hid_t space = H5Screate(H5S_SCALAR);
   hid_t type = text_type(strlen(text) + 1, H5T_CSET_ASCII); // all that Octave's load takes
-  hid_t set = make_dataset(h, group, name, type, type, space, text);
-  dea_h5_put_text(h, set, "encoding", "UTF-8");
+  hid_t set = create_dataset(h, group, name, type, type, space, text);
+  dea_h5_write_text(h, set, "encoding", "UTF-8");
   dea_h5_close(set);
   dea_h5_close(type);
   dea_h5_close(space);

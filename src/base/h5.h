@@ -25,7 +25,7 @@ void dea_h5_fail(struct h5 *h, const char *what);
 
 /* A file is made in memory (core driver) and written as a whole or not at all, so that a full disk
  * is an ordinary error; writing closes it. */
-hid_t dea_h5_file_make(struct h5 *h);
+hid_t dea_h5_file_create(struct h5 *h);
 void dea_h5_file_write(struct h5 *h, hid_t file);
 
 /* Opens a regular file to read it. written: it may be marked as being written, and is then read as
@@ -36,17 +36,17 @@ hid_t dea_h5_file_open(struct h5 *h, bool written);
 /* Handles are negative after a failure; dea_h5_close takes any. group_get: opened, or made when it
  * is not there. */
 hid_t dea_h5_group_get(struct h5 *h, hid_t parent, const char *name);
-hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name);
+hid_t dea_h5_group_create(struct h5 *h, hid_t parent, const char *name);
 hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name);
 void dea_h5_close(hid_t object);
 
-void dea_h5_put_text(struct h5 *h, hid_t object, const char *name, const char *text);
-void dea_h5_put_int(struct h5 *h, hid_t object, const char *name, long long value);
-void dea_h5_put_real(struct h5 *h, hid_t object, const char *name, double value);
+void dea_h5_write_text(struct h5 *h, hid_t object, const char *name, const char *text);
+void dea_h5_write_int(struct h5 *h, hid_t object, const char *name, long long value);
+void dea_h5_write_real(struct h5 *h, hid_t object, const char *name, double value);
 /* One-dimensional dataset with its unit and meaning. memory_type, file_type: HDF5 types. */
-void dea_h5_put_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
-                      hid_t file_type, size_t count, const void *values, const char *unit,
-                      const char *meaning);
+void dea_h5_write_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type,
+                        hid_t file_type, size_t count, const void *values, const char *unit,
+                        const char *meaning);
 /* Bytes of the file that an object is in; 0 when they cannot be found out. */
 hsize_t dea_h5_file_size(const struct h5 *h, hid_t object);
 /* A dataset by name, for its attributes. */
@@ -54,7 +54,7 @@ hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name);
 /* Gives an object of `from` the same name in `to` as well. */
 void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to);
 /* UTF-8 text of any length as a scalar dataset. */
-void dea_h5_put_long_text(struct h5 *h, hid_t group, const char *name, const char *text);
+void dea_h5_write_long_text(struct h5 *h, hid_t group, const char *name, const char *text);
 
 /* Readers of attributes fail when the attribute is missing. Text longer than size is cut. */
 void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void dea_json_put(json_t *object, const char *key, double value)
+void dea_json_add(json_t *object, const char *key, double value)
 {
   if (isfinite(value)) {
     json_object_set_new(object, key, json_real(value));
@@ -16,12 +16,12 @@ json_t *dea_json_number(double value)
   return isfinite(value) ? json_real(value) : json_null();
 }
 
-void dea_json_put_count(json_t *object, const char *key, size_t count)
+void dea_json_add_count(json_t *object, const char *key, size_t count)
 {
   json_object_set_new(object, key, json_integer((json_int_t)count));
 }
 
-void dea_json_put_text(json_t *object, const char *key, const char *text)
+void dea_json_add_text(json_t *object, const char *key, const char *text)
 {
   json_t *value = json_string(text != NULL ? text : "");
   // Text that is not UTF-8 is not JSON; a file name may be any bytes.

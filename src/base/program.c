@@ -56,7 +56,7 @@ int dea_program_start(char *const argv[], const char *directory, bool all,
 }
 
 /* Reads what there is and keeps the last of it; false at its end. */
-static bool hear(int pipe_end, char *said, size_t *used)
+static bool receive(int pipe_end, char *said, size_t *used)
 {
   char more[512];
   ssize_t n = read(pipe_end, more, sizeof more);
@@ -98,7 +98,7 @@ enum dea_program_end dea_program_wait(const struct dea_context *ctx,
     struct pollfd wait = {.fd = program->said, .events = POLLIN};
     int ready = poll(&wait, 1, LOOK_MS);
     if (ready > 0) {
-      open = hear(program->said, said, &used);
+      open = receive(program->said, said, &used);
     }
     if (end == DEA_PROGRAM_DONE && ctx != NULL && dea_interrupted(ctx)) {
       end = DEA_PROGRAM_INTERRUPTED;

@@ -29,7 +29,7 @@ struct finding {
 // There ------------------------------------------------------------------------------------------
 
 /* The process that waits has shut its side, or is gone. */
-static bool is_told(void *user)
+static bool has_message(void *user)
 {
   struct pollfd end = {.fd = *(const int *)user, .events = POLLIN};
   return poll(&end, 1, 0) > 0;
@@ -81,7 +81,7 @@ static int work_aside(struct dea_context *ctx, dea_worker_work work, void *user,
   dea_context_set_progress(ctx, NULL, NULL);
   dea_context_set_finding_sink(ctx, NULL, NULL);
   dea_context_set_interrupt(ctx, NULL);
-  dea_context_set_interrupt_fn(ctx, is_told, &socket);
+  dea_context_set_interrupt_fn(ctx, has_message, &socket);
   head.status = work(ctx, user, &bytes);
   snprintf(head.message, sizeof head.message, "%s", dea_context_message(ctx));
   add_findings(ctx, known, &findings);
@@ -134,7 +134,7 @@ dea_status dea_worker_start(struct dea_context *ctx, dea_worker_work work, void 
 }
 
 /* Its end; nothing of one that did not hand back all counts. */
-static void bury(struct dea_worker *aside)
+static void reap(struct dea_worker *aside)
 {
   int how = 0;
   while (waitpid(aside->process, &how, 0) < 0 && errno == EINTR) {
@@ -145,20 +145,20 @@ static void bury(struct dea_worker *aside)
 }
 
 /* Some of what it says, or its end. */
-static dea_status hear(struct dea_context *ctx, struct dea_worker *aside)
+static dea_status receive(struct dea_context *ctx, struct dea_worker *aside)
 {
   char chunk[CHUNK];
   const ssize_t n = recv(aside->socket, chunk, sizeof chunk, 0);
   if (n > 0) {
     dea_bytes_add(&aside->said, chunk, (size_t)n);
   } else if (n == 0 || errno != EINTR) {
-    bury(aside);
+    reap(aside);
   }
   return aside->said.failed ? dea_context_status(ctx) : DEA_OK;
 }
 
 /* Tells one that this process was interrupted, once. */
-static void tell(const struct dea_context *ctx, struct dea_worker *aside)
+static void send_status(const struct dea_context *ctx, struct dea_worker *aside)
 {
   if (!aside->told && dea_interrupted(ctx)) {
     shutdown(aside->socket, SHUT_WR);
@@ -175,7 +175,7 @@ dea_status dea_worker_wait(struct dea_context *ctx, struct dea_worker *all, size
     nfds_t run = 0;
     for (size_t i = 0; i < count && run < ASIDE_MAX; i++) {
       if (all[i].process > 0) {
-        tell(ctx, &all[i]);
+        send_status(ctx, &all[i]);
         at[run] = i;
         polled[run++] = (struct pollfd){.fd = all[i].socket, .events = POLLIN};
       }
@@ -185,7 +185,7 @@ dea_status dea_worker_wait(struct dea_context *ctx, struct dea_worker *all, size
     }
     if (poll(polled, run, ASK_MS) > 0) {
       for (nfds_t k = 0; k < run; k++) {
-        DEA_TRY(ctx, polled[k].revents != 0 ? hear(ctx, &all[at[k]]) : DEA_OK);
+        DEA_TRY(ctx, polled[k].revents != 0 ? receive(ctx, &all[at[k]]) : DEA_OK);
       }
     }
   }
@@ -207,7 +207,7 @@ bool dea_worker_failed(const struct dea_worker *aside)
   return aside->begun && aside->process == 0 && !(read_head(aside, &head) && head.status == DEA_OK);
 }
 
-static dea_status take_findings(struct dea_context *ctx, const char *from, size_t length)
+static dea_status read_findings(struct dea_context *ctx, const char *from, size_t length)
 {
   struct finding finding;
   for (const char *end = from + length; from < end; from += finding.file) {
@@ -225,8 +225,8 @@ static dea_status take_findings(struct dea_context *ctx, const char *from, size_
   return DEA_OK;
 }
 
-dea_status dea_worker_take(struct dea_context *ctx, const struct dea_worker *aside,
-                           const char **bytes, size_t *length)
+dea_status dea_worker_collect(struct dea_context *ctx, const struct dea_worker *aside,
+                              const char **bytes, size_t *length)
 {
   struct head head;
   *bytes = NULL;
@@ -236,7 +236,7 @@ dea_status dea_worker_take(struct dea_context *ctx, const struct dea_worker *asi
   }
   *bytes = aside->said.data + sizeof head;
   *length = head.bytes;
-  DEA_TRY(ctx, take_findings(ctx, *bytes + head.bytes, head.findings));
+  DEA_TRY(ctx, read_findings(ctx, *bytes + head.bytes, head.findings));
   return head.status == DEA_OK ? DEA_OK : dea_fail(ctx, head.status, "%s", head.message);
 }
 
@@ -244,7 +244,7 @@ void dea_worker_end(struct dea_worker *aside)
 {
   if (aside->process > 0) {
     kill(aside->process, SIGKILL);
-    bury(aside);
+    reap(aside);
   }
   if (aside->begun) {
     dea_bytes_free(&aside->said);

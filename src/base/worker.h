@@ -29,8 +29,8 @@ bool dea_worker_failed(const struct dea_worker *aside);
 /* Of one that has ended: its status, with its message, after its findings are added to those here;
  * *bytes [*length]: what it has handed back, also where it failed, lent until dea_worker_end.
  * DEA_E_TOOL where it died. */
-dea_status dea_worker_take(struct dea_context *ctx, const struct dea_worker *aside,
-                           const char **bytes, size_t *length);
+dea_status dea_worker_collect(struct dea_context *ctx, const struct dea_worker *aside,
+                              const char **bytes, size_t *length);
 /* Ends it at once if it still runs, and frees what came of it. */
 void dea_worker_end(struct dea_worker *aside);
 

@@ -54,8 +54,8 @@ dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const
                            directory, name);
 }
 
-dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, const char *name,
-                             bool force)
+dea_status dea_path_create_folders(struct dea_context *ctx, const char *directory, const char *name,
+                                   bool force)
 {
   char *path = dea_path_join(ctx, directory, name);
   DEA_TRY_MEMORY(path != NULL);
@@ -87,7 +87,7 @@ static dea_status folder_make_one(struct dea_context *ctx, const char *directory
                   errno == EEXIST ? "a file has that name" : strerror(errno));
 }
 
-dea_status dea_folder_make(struct dea_context *ctx, const char *directory)
+dea_status dea_folder_create(struct dea_context *ctx, const char *directory)
 {
   if (directory[0] == '\0') {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the name of the folder is empty");

@@ -6,7 +6,7 @@
 /* "directory/name"; owned by the caller, NULL on failure. */
 char *dea_path_join(struct dea_context *ctx, const char *directory, const char *name);
 /* Makes a folder and those above it; fine when it is there. DEA_E_IO otherwise. */
-dea_status dea_folder_make(struct dea_context *ctx, const char *directory);
+dea_status dea_folder_create(struct dea_context *ctx, const char *directory);
 /* A new name is in its folder, which has to reach the disk too: brings the folder that `path` lies
  * in there. Some file systems cannot. */
 void dea_folder_sync(const char *path);
@@ -18,8 +18,8 @@ bool dea_path_is_folder(const char *path);
 /* DEA_E_IO, which says how to go on, where something of that name is in the folder. */
 dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const char *name);
 /* The same of a file, which `force` removes instead; a folder of that name stays. */
-dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, const char *name,
-                             bool force);
+dea_status dea_path_create_folders(struct dea_context *ctx, const char *directory, const char *name,
+                                   bool force);
 
 /* Removes a file of that name; one that is not there, is no file or cannot be removed stays. */
 void dea_path_forget(struct dea_context *ctx, const char *directory, const char *name);

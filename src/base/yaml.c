@@ -56,9 +56,9 @@ static struct dea_location place_of(const struct reading *r)
                                                         r->event.start_mark.column + 1};
 }
 
-static dea_status take_node(struct reading *r, struct dea_node **out);
+static dea_status read_node(struct reading *r, struct dea_node **out);
 
-static dea_status take_value(struct reading *r, struct dea_node *node)
+static dea_status read_value(struct reading *r, struct dea_node *node)
 {
   const char *text = (const char *)r->event.data.scalar.value;
   const size_t size = r->event.data.scalar.length;
@@ -79,12 +79,12 @@ static dea_status take_value(struct reading *r, struct dea_node *node)
   return node->text != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
-static dea_status take_list(struct reading *r, struct dea_node *node)
+static dea_status read_list(struct reading *r, struct dea_node *node)
 {
   struct dea_node **last = &node->child;
   DEA_TRY(r->ctx, next_event(r));
   while (r->event.type != YAML_SEQUENCE_END_EVENT) {
-    DEA_TRY(r->ctx, take_node(r, last));
+    DEA_TRY(r->ctx, read_node(r, last));
     DEA_TRY(r->ctx, next_event(r));
     last = &(*last)->next;
     node->child_count++;
@@ -130,7 +130,7 @@ static dea_status check_keys(struct reading *r, const struct dea_node *section)
   return status;
 }
 
-static dea_status take_section(struct reading *r, struct dea_node *node)
+static dea_status read_section(struct reading *r, struct dea_node *node)
 {
   struct dea_node **last = &node->child;
   DEA_TRY(r->ctx, next_event(r));
@@ -139,9 +139,9 @@ static dea_status take_section(struct reading *r, struct dea_node *node)
       return dea_refuse(r->ctx, place_of(r), "a key must be a word");
     }
     struct dea_node *key = NULL;
-    DEA_TRY(r->ctx, take_node(r, &key));
+    DEA_TRY(r->ctx, read_node(r, &key));
     DEA_TRY(r->ctx, next_event(r));
-    DEA_TRY(r->ctx, take_node(r, last));
+    DEA_TRY(r->ctx, read_node(r, last));
     DEA_TRY(r->ctx, next_event(r));
     (*last)->key = key->text;
     (*last)->key_place = key->location;
@@ -152,7 +152,7 @@ static dea_status take_section(struct reading *r, struct dea_node *node)
 }
 
 /* The node that begins with the event, up to the event that it ends with. */
-static dea_status take_node(struct reading *r, struct dea_node **out)
+static dea_status read_node(struct reading *r, struct dea_node **out)
 {
   const yaml_event_t *e = &r->event;
   const bool value = e->type == YAML_SCALAR_EVENT, list = e->type == YAML_SEQUENCE_START_EVENT;
@@ -182,13 +182,13 @@ static dea_status take_node(struct reading *r, struct dea_node **out)
                             .overridden = r->text->fixed != NULL};
   *out = node;
   r->depth++;
-  DEA_TRY(r->ctx, value ? take_value(r, node) : list ? take_list(r, node) : take_section(r, node));
+  DEA_TRY(r->ctx, value ? read_value(r, node) : list ? read_list(r, node) : read_section(r, node));
   r->depth--;
   return DEA_OK;
 }
 
 /* The one document of a text. */
-static dea_status take_document(struct reading *r, struct dea_node **out)
+static dea_status read_document(struct reading *r, struct dea_node **out)
 {
   DEA_TRY(r->ctx, next_event(r)); // the stream begins
   DEA_TRY(r->ctx, next_event(r));
@@ -197,7 +197,7 @@ static dea_status take_document(struct reading *r, struct dea_node **out)
                            r->text->fixed != NULL ? "no value is given" : "the file is empty");
   }
   DEA_TRY(r->ctx, next_event(r));
-  DEA_TRY(r->ctx, take_node(r, out));
+  DEA_TRY(r->ctx, read_node(r, out));
   DEA_TRY(r->ctx, next_event(r)); // the document ends
   DEA_TRY(r->ctx, next_event(r));
   return r->event.type == YAML_STREAM_END_EVENT
@@ -217,7 +217,7 @@ static dea_status parse_into(struct dea_context *ctx, struct dea_yaml *yaml, con
   }
   yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);
   yaml_parser_set_input_string(&r.parser, (const unsigned char *)text.bytes, text.length);
-  const dea_status status = take_document(&r, out);
+  const dea_status status = read_document(&r, out);
   yaml_event_delete(&r.event);
   yaml_parser_delete(&r.parser);
   return status;
@@ -368,7 +368,7 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
 
 /* Puts a node into a section in the place of the member `key`; one without a value takes it away.
  */
-static dea_status put(struct dea_yaml *yaml, struct dea_node *section, const char *key,
+static dea_status add(struct dea_yaml *yaml, struct dea_node *section, const char *key,
                       struct dea_location location, struct dea_node *node)
 {
   struct dea_node **item = link_of_item(section, key, strlen(key));
@@ -408,7 +408,7 @@ dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, con
   struct dea_node *section = NULL, *node = NULL;
   DEA_TRY(ctx, walk(ctx, yaml, location, &path, &section));
   DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &location, &node));
-  return DEA_CHAIN(ctx, put(yaml, section, path, location, node));
+  return DEA_CHAIN(ctx, add(yaml, section, path, location, node));
 }
 
 enum { PATH_SIZE = 256 };
@@ -435,7 +435,7 @@ static dea_status merge_below(struct dea_context *ctx, struct dea_yaml *yaml, co
     *copy = *child;
     copy->overridden = true;
     DEA_TRY(ctx, walk(ctx, yaml, child->key_place, &path, &section));
-    DEA_TRY(ctx, put(yaml, section, path, child->key_place, copy));
+    DEA_TRY(ctx, add(yaml, section, path, child->key_place, copy));
   }
   return DEA_OK;
 }

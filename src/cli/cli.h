@@ -124,8 +124,8 @@ struct cli_option {
   size_t least, most;             // how many; most 0: one, of an option the last counts
   const char *too_few, *too_many; // what is said then
   bool or_before;                 // excludes the row before
-  struct dea_measure measure;     // of cli_take_quantity: unit and example
-  bool positive;                  // of cli_take_quantity: more than 0
+  struct dea_measure measure;     // of cli_parse_quantity: unit and example
+  bool positive;                  // of cli_parse_quantity: more than 0
 };
 
 enum { CLI_OPTIONS_MAX = 24, CLI_WORDS_MAX = 64, CLI_OVERRIDES_MAX = 256 };
@@ -143,24 +143,24 @@ struct cli_overrides {
 /* Options of every command, into a struct dea_cli. */
 extern const struct cli_option cli_common_options[];
 /* Takes them out of argv, wherever they stand; returns the new argc. */
-int cli_take_common(struct dea_cli *cli, int argc, char **argv);
+int cli_parse_common(struct dea_cli *cli, int argc, char **argv);
 /* Reads a command line (argv[0] is the command's name) into its request: 0, or the exit code after
  * a usage error. What it keeps lends from argv. */
 int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, char **argv,
               void *request);
 /* For `take`: "key=value" into a struct cli_overrides; a number with its unit into a double; "5%"
  * or "0.05", of 0 and more, into a double; "svg,pdf" and "85 mm" into a struct dea_plot_format. */
-int cli_take_override(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target);
-int cli_take_quantity(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target);
-int cli_take_formats(struct dea_cli *cli, const struct dea_command *command,
-                     const struct cli_option *option, const char *text, void *target);
-int cli_take_width(struct dea_cli *cli, const struct dea_command *command,
-                   const struct cli_option *option, const char *text, void *target);
-/* "4" into a double, and how many processes that are: without it, 0, one a core. */
-int cli_take_processes(struct dea_cli *cli, const struct dea_command *command,
+int cli_parse_override(struct dea_cli *cli, const struct dea_command *command,
                        const struct cli_option *option, const char *text, void *target);
+int cli_parse_quantity(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target);
+int cli_parse_formats(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target);
+int cli_parse_width(struct dea_cli *cli, const struct dea_command *command,
+                    const struct cli_option *option, const char *text, void *target);
+/* "4" into a double, and how many processes that are: without it, 0, one a core. */
+int cli_parse_processes(struct dea_cli *cli, const struct dea_command *command,
+                        const struct cli_option *option, const char *text, void *target);
 size_t cli_processes(double given);
 /* "0.2" or "20%"; false otherwise. */
 bool cli_read_share(const char *text, double *share);
@@ -191,7 +191,7 @@ bool cli_read_share(const char *text, double *share);
   {                                                                                                \
     "set", letter, keys, "KEY=VALUE",                                                              \
         "take VALUE in place of the file's, for example --set " example, CLI_AT(overrides),        \
-        cli_take_override, .most = CLI_OVERRIDES_MAX                                               \
+        cli_parse_override, .most = CLI_OVERRIDES_MAX                                              \
   }
 #define CLI_FORCE_ROW(letter, text)                                                                \
   {                                                                                                \
@@ -203,11 +203,11 @@ bool cli_read_share(const char *text, double *share);
   }
 #define CLI_FORMAT_ROW(text)                                                                       \
   {                                                                                                \
-    "format", 0, CLI_FORMAT, "LIST", text, CLI_AT(format), cli_take_formats                        \
+    "format", 0, CLI_FORMAT, "LIST", text, CLI_AT(format), cli_parse_formats                       \
   }
 #define CLI_WIDTH_ROW(text)                                                                        \
   {                                                                                                \
-    "width", 0, CLI_TEXT, "MM", text, CLI_AT(format), cli_take_width                               \
+    "width", 0, CLI_TEXT, "MM", text, CLI_AT(format), cli_parse_width                              \
   }
 
 // Help -------------------------------------------------------------------------------------------

@@ -36,8 +36,8 @@ struct side {
 // Command line -----------------------------------------------------------------------------------
 
 /* "5%" or "0.05". */
-static int take_tolerance(struct dea_cli *cli, const struct dea_command *command,
-                          const struct cli_option *option, const char *text, void *target)
+static int parse_tolerance(struct dea_cli *cli, const struct dea_command *command,
+                           const struct cli_option *option, const char *text, void *target)
 {
   double *tolerance = target;
   (void)option;
@@ -47,8 +47,8 @@ static int take_tolerance(struct dea_cli *cli, const struct dea_command *command
 }
 
 /* "lumped" or "lumped:axisymmetric". */
-static int take_models(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target)
+static int parse_models(struct dea_cli *cli, const struct dea_command *command,
+                        const struct cli_option *option, const char *text, void *target)
 {
   struct models *models = target;
   size_t n = strcspn(text, ":");
@@ -469,14 +469,14 @@ static const struct cli_option options[] = {
      .too_few = "give two or more: runs, and a run or what was measured",
      .too_many = "at most 16 runs can be compared at a time"},
     {"tolerance", 0, CLI_TEXT, "SHARE", "largest difference allowed, such as 5%", CLI_AT(tolerance),
-     take_tolerance},
+     parse_tolerance},
     {"quantity", 0, CLI_QUANTITY, "KEY",
      "only this quantity, such as fibre_tip_z_m, or hub_z_m of a monitor; can be repeated",
      CLI_AT(quantities), .most = CLI_WORDS_MAX, .too_many = "too many quantities"},
     {"model", 0, CLI_MODEL, "MODEL",
      "only this model; can be repeated. lumped:axisymmetric takes one of A, the other of B. There "
      "are",
-     CLI_AT(models), take_models, .most = DEA_DESIGN_MODELS_MAX},
+     CLI_AT(models), parse_models, .most = DEA_DESIGN_MODELS_MAX},
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "draw the figures into this folder"),
     CLI_FORMAT_ROW("formats with commas between, svg if not given"),
     CLI_WIDTH_ROW("width, 85 for one column or 170 for two"),

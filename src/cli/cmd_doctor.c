@@ -27,8 +27,8 @@ struct report {
 enum importance { NEEDED, WISHED };
 
 /* One line; advice: what to do when it is not ok, may be NULL. */
-static void say(struct report *report, enum importance importance, bool ok, const char *what,
-                const char *found, const char *advice)
+static void print_row(struct report *report, enum importance importance, bool ok, const char *what,
+                      const char *found, const char *advice)
 {
   printf("%-8s %-22s %s\n", ok ? "ok" : "missing", what, found);
   if (!ok && advice != NULL) {
@@ -43,7 +43,7 @@ static void check_libraries(struct report *report)
 {
   char text[256];
   dea_libraries_text(text, sizeof text);
-  say(report, NEEDED, true, "libraries", text, NULL);
+  print_row(report, NEEDED, true, "libraries", text, NULL);
 }
 
 static void check_units(struct report *report)
@@ -52,20 +52,22 @@ static void check_units(struct report *report)
   ut_system *units = ut_read_xml(NULL);
   ut_unit *unit = units != NULL ? ut_parse(units, "kPa", UT_ASCII) : NULL;
   bool ok = unit != NULL;
-  say(report, NEEDED, ok, "units", ok ? "udunits database" : "the udunits database cannot be read",
-      "install libudunits2-data, or set UDUNITS2_XML_PATH to udunits2.xml");
+  print_row(report, NEEDED, ok, "units",
+            ok ? "udunits database" : "the udunits database cannot be read",
+            "install libudunits2-data, or set UDUNITS2_XML_PATH to udunits2.xml");
   ut_free(unit);
   ut_free_system(units);
 }
 
 /* Line "N in FOLDER", and what to do if there are none. */
-static void say_data(struct dea_context *ctx, struct report *report, enum importance importance,
-                     const char *what, size_t count, const char *folder)
+static void print_data(struct dea_context *ctx, struct report *report, enum importance importance,
+                       const char *what, size_t count, const char *folder)
 {
   struct dea_text text = {.ctx = ctx};
   dea_text_add(&text, "%zu in %s", count, folder);
-  say(report, importance, count > 0, what, count > 0 ? dea_text_get(&text) : "none were found",
-      "install the program again: its data files are not where they should be");
+  print_row(report, importance, count > 0, what,
+            count > 0 ? dea_text_get(&text) : "none were found",
+            "install the program again: its data files are not where they should be");
   dea_text_free(&text);
 }
 
@@ -90,7 +92,7 @@ static dea_status check_materials(struct dea_context *ctx, struct report *report
   if (status == DEA_OK) {
     const char *slash = strrchr(folder, '/');
     char *directory = dea_copy_text(ctx, folder, slash != NULL ? (size_t)(slash - folder) : 0);
-    say_data(ctx, report, NEEDED, "materials", count, directory != NULL ? directory : folder);
+    print_data(ctx, report, NEEDED, "materials", count, directory != NULL ? directory : folder);
     dea_free(ctx, directory);
   }
   return status;
@@ -101,7 +103,7 @@ static dea_status check_examples(struct dea_context *ctx, struct report *report)
   struct cli_data_list list;
   dea_status status = cli_examples_find(ctx, ".yaml", &list);
   if (status == DEA_OK) {
-    say_data(ctx, report, WISHED, "examples", list.count, list.folder);
+    print_data(ctx, report, WISHED, "examples", list.count, list.folder);
   }
   cli_data_free(ctx, &list);
   return status;
@@ -136,14 +138,14 @@ static void check_terminal(struct report *report, const char *terminal)
   output[strcspn(output, "\n")] = '\0';
   char what[64];
   snprintf(what, sizeof what, "figures as %s", terminal);
-  say(report, WISHED, ok, what, ok ? "drawn" : output,
-      "install gnuplot-nox and a font "
-      "(fonts-dejavu-core)");
+  print_row(report, WISHED, ok, what, ok ? "drawn" : output,
+            "install gnuplot-nox and a font "
+            "(fonts-dejavu-core)");
 }
 
 /* A module: of this build where its packages were there when that was configured. */
-static void say_module(struct report *report, const char *what, const char *path, const char *file,
-                       const char *packages, const char *without)
+static void print_module(struct report *report, const char *what, const char *path,
+                         const char *file, const char *packages, const char *without)
 {
   char advice[400];
   const bool of_build = strstr(DEA_MODULES_OF_BUILD, file) != NULL;
@@ -156,41 +158,42 @@ static void say_module(struct report *report, const char *what, const char *path
     snprintf(advice, sizeof advice, "install %s, and build again; without it %s", packages,
              without);
   }
-  say(report, WISHED, path != NULL, what,
-      path != NULL ? path
-      : of_build   ? "not found"
-                   : "not built",
-      advice);
+  print_row(report, WISHED, path != NULL, what,
+            path != NULL ? path
+            : of_build   ? "not found"
+                         : "not built",
+            advice);
 }
 
 static void check_engine(struct report *report)
 {
   char path[4096];
   bool ok = dea_solid_module_find(path, sizeof path);
-  say_module(report, "3D engine", ok ? path : NULL, "dea_solid_module",
-             "libpetsc-real-dev and libslepc-real-dev", "there is no model 3d");
+  print_module(report, "3D engine", ok ? path : NULL, "dea_solid_module",
+               "libpetsc-real-dev and libslepc-real-dev", "there is no model 3d");
 }
 
 static void check_cairo(struct report *report)
 {
   char path[4096];
   bool ok = dea_canvas_find(path, sizeof path);
-  say_module(report, "drawings of dea fab", ok ? path : NULL, "dea_cairo_module", "libcairo2-dev",
-             "dea fab writes DXF and SVG only");
+  print_module(report, "drawings of dea fab", ok ? path : NULL, "dea_cairo_module", "libcairo2-dev",
+               "dea fab writes DXF and SVG only");
 }
 
 static void check_geos(struct report *report)
 {
   char path[4096];
   bool ok = dea_boolean_find(path, sizeof path);
-  say_module(report, "booleans of regions", ok ? path : NULL, "dea_geos_module", "libgeos-dev",
-             "regions are not united or cut");
+  print_module(report, "booleans of regions", ok ? path : NULL, "dea_geos_module", "libgeos-dev",
+               "regions are not united or cut");
 }
 
 static void check_nlopt(struct report *report)
 {
   const bool ok = dea_search_is_built();
-  say(report, WISHED, ok, "searches of dea optimise", ok ? "NLopt" : "not built",
+  print_row(
+      report, WISHED, ok, "searches of dea optimise", ok ? "NLopt" : "not built",
       "install libnlopt-dev, and build again; without it there is dea sweep, but no dea optimise");
 }
 
@@ -198,18 +201,18 @@ static void check_studio(struct report *report)
 {
   bool server, editor;
   dea_studio_parts(&server, &editor);
-  say(report, WISHED, server, "page of dea studio", server ? "civetweb" : "not built",
-      "install libcivetweb-dev, and build again; without it there is no dea studio");
-  say(report, WISHED, editor, "editor of dea studio", editor ? "CodeMirror" : "a plain field",
-      "install libjs-codemirror, and build again; without it keys are not completed");
+  print_row(report, WISHED, server, "page of dea studio", server ? "civetweb" : "not built",
+            "install libcivetweb-dev, and build again; without it there is no dea studio");
+  print_row(report, WISHED, editor, "editor of dea studio", editor ? "CodeMirror" : "a plain field",
+            "install libjs-codemirror, and build again; without it keys are not completed");
 }
 
 static void check_matio(struct report *report)
 {
   char path[4096];
   bool ok = cli_bench_find_matio(path, sizeof path);
-  say_module(report, ".mat files", ok ? path : NULL, "dea_matio_module", "libmatio-dev",
-             "files are exchanged as CSV");
+  print_module(report, ".mat files", ok ? path : NULL, "dea_matio_module", "libmatio-dev",
+               "files are exchanged as CSV");
 }
 
 static void check_gnuplot(struct report *report)
@@ -217,8 +220,8 @@ static void check_gnuplot(struct report *report)
   char output[OUTPUT_SIZE];
   bool ok = capture("gnuplot --version 2>/dev/null", output);
   output[strcspn(output, "\n")] = '\0';
-  say(report, WISHED, ok, "gnuplot", ok ? output : "not found on the PATH",
-      "install gnuplot-nox; without it a run writes data and no figures");
+  print_row(report, WISHED, ok, "gnuplot", ok ? output : "not found on the PATH",
+            "install gnuplot-nox; without it a run writes data and no figures");
   if (ok) {
     check_terminal(report, "svg");
     check_terminal(report, "pdfcairo");
@@ -234,15 +237,15 @@ static void check_folder(struct report *report)
   }
   bool ok = access(".", W_OK) == 0;
   snprintf(text, sizeof text, "%s%s%s", folder, ok ? "" : ": ", ok ? "" : strerror(errno));
-  say(report, WISHED, ok, "folder to write in", text, "go to another folder, or use -o DIR");
+  print_row(report, WISHED, ok, "folder to write in", text, "go to another folder, or use -o DIR");
 }
 
 static int run(struct dea_cli *cli, void *request)
 {
   (void)request;
   struct report report = {.usable = true};
-  say(&report, NEEDED, true, "dea", DEA_VERSION ", built by " DEA_COMPILER " as " DEA_BUILD_TYPE,
-      NULL);
+  print_row(&report, NEEDED, true, "dea",
+            DEA_VERSION ", built by " DEA_COMPILER " as " DEA_BUILD_TYPE, NULL);
   check_libraries(&report);
   check_units(&report);
   dea_status status = check_materials(cli->ctx, &report);

@@ -123,7 +123,7 @@ static dea_status copy_to(struct dea_context *ctx, const char *from, FILE *out, 
 }
 
 /* Makes the folders in `path` that come before its last "/". */
-static dea_status make_parents(struct dea_context *ctx, char *path)
+static dea_status create_parents(struct dea_context *ctx, char *path)
 {
   for (char *p = strchr(path + 1, '/'); p != NULL; p = strchr(p + 1, '/')) {
     *p = '\0';
@@ -148,7 +148,7 @@ static dea_status copy_one(struct dea_context *ctx, const struct cli_data_file *
     dea_text_free(&path);
     return DEA_E_MEMORY;
   }
-  dea_status status = make_parents(ctx, path.data);
+  dea_status status = create_parents(ctx, path.data);
   status = status == DEA_OK ? dea_path_check_target(ctx, path.data) : status;
   FILE *out = status == DEA_OK ? fopen(path.data, force ? "wb" : "wbx") : NULL;
   if (status == DEA_OK && out == NULL) {

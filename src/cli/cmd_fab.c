@@ -24,13 +24,13 @@ static json_t *amounts_json(const struct dea_workshop *w)
   struct dea_amounts a;
   json_t *json = json_object();
   dea_amounts_find(w, &a);
-  dea_json_put(json, "film_area_m2", a.film_area_m2);
-  dea_json_put(json, "ink_area_m2", a.ink_area_m2);
-  dea_json_put(json, "ink_volume_m3", a.ink_volume_m3);
-  dea_json_put(json, "transfer_glue_area_m2", a.transfer_glue_area_m2);
-  dea_json_put(json, "bond_area_m2", a.bond_area_m2);
-  dea_json_put(json, "bond_volume_m3", a.bond_volume_m3);
-  dea_json_put(json, "mass_kg", a.mass_kg);
+  dea_json_add(json, "film_area_m2", a.film_area_m2);
+  dea_json_add(json, "ink_area_m2", a.ink_area_m2);
+  dea_json_add(json, "ink_volume_m3", a.ink_volume_m3);
+  dea_json_add(json, "transfer_glue_area_m2", a.transfer_glue_area_m2);
+  dea_json_add(json, "bond_area_m2", a.bond_area_m2);
+  dea_json_add(json, "bond_volume_m3", a.bond_volume_m3);
+  dea_json_add(json, "mass_kg", a.mass_kg);
   return json;
 }
 
@@ -53,10 +53,10 @@ static void print_json(const struct dea_workshop *w, const struct request *reque
   }
   dea_workshop_files(w, options, add_name, files);
   json_t *json = json_object();
-  dea_json_put_text(json, "design", request->design);
-  dea_json_put_text(json, "folder", directory);
+  dea_json_add_text(json, "design", request->design);
+  dea_json_add_text(json, "folder", directory);
   json_object_set_new(json, "copies", json_integer(w->plan.copies));
-  dea_json_put(json, "kerf_m", w->plan.kerf_m);
+  dea_json_add(json, "kerf_m", w->plan.kerf_m);
   json_object_set_new(json, "parts", parts);
   json_object_set_new(json, "files", files);
   json_object_set_new(json, "amounts_of_one", amounts_json(w));
@@ -83,8 +83,8 @@ static dea_status write_files(struct dea_cli *cli, const struct request *request
   return status;
 }
 
-static dea_status make(struct dea_cli *cli, const void *request, const struct dea_design *design,
-                       const struct dea_device *device)
+static dea_status build(struct dea_cli *cli, const void *request, const struct dea_design *design,
+                        const struct dea_device *device)
 {
   struct dea_workshop *workshop;
   DEA_TRY(cli->ctx, dea_workshop_create(cli->ctx, design, device, &workshop));
@@ -96,7 +96,7 @@ static dea_status make(struct dea_cli *cli, const void *request, const struct de
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
-  return cli_with_device(cli, request->design, &request->overrides, make, request);
+  return cli_with_device(cli, request->design, &request->overrides, build, request);
 }
 
 static const struct cli_option options[] = {

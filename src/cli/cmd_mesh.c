@@ -92,8 +92,8 @@ static void print_mesh(const struct request *request, const struct dea_layout_me
   print_quality(request, grid);
 }
 
-static dea_status make_mesh(struct dea_cli *cli, const void *user, const struct dea_design *design,
-                            const struct dea_device *device)
+static dea_status build_mesh(struct dea_cli *cli, const void *user, const struct dea_design *design,
+                             const struct dea_device *device)
 {
   const struct request *request = user;
   const struct dea_model_settings settings = dea_model_settings_of(design);
@@ -130,7 +130,7 @@ static int run(struct dea_cli *cli, void *user)
   const struct request *request = user;
   const dea_status status = refuse_output(cli, request);
   return status == DEA_OK
-             ? cli_with_device(cli, request->design, &request->overrides, make_mesh, request)
+             ? cli_with_device(cli, request->design, &request->overrides, build_mesh, request)
              : cli_report(cli, status);
 }
 

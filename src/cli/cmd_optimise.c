@@ -135,13 +135,13 @@ static const struct cli_option options[] = {
     {"output", 'o', CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .optimise)",
      CLI_AT(options.folder)},
     {"jobs", 'j', CLI_TEXT, "N", "designs at once (default: one a core)", CLI_AT(processes),
-     cli_take_processes},
+     cli_parse_processes},
     {"force", 'f', CLI_FLAG, NULL, "throw away the designs that are there", CLI_AT(options.force)},
     {"format", 0, CLI_FORMAT, "LIST",
      "formats of the figures with commas between, svg if not given", CLI_AT(options.format),
-     cli_take_formats},
+     cli_parse_formats},
     {"width", 0, CLI_TEXT, "MM", "width of the figures (default 85)", CLI_AT(options.format),
-     cli_take_width},
+     cli_parse_width},
     {0}};
 
 const struct dea_command cmd_optimise = {

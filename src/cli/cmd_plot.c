@@ -78,7 +78,7 @@ static const struct cli_option options[] = {
     CLI_FORMAT_ROW("formats with commas between, as in the design if not given"),
     {"voltage", 0, CLI_TEXT, "V",
      "voltage of the map and the surface, as '6 kV'; the last if not given", CLI_AT(voltage_V),
-     cli_take_quantity, .measure = {"V", "6 kV"}},
+     cli_parse_quantity, .measure = {"V", "6 kV"}},
     CLI_WIDTH_ROW("width, 85 for one column or 170 for two"),
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "folder for the figures; RUN/figures if not given"),
     {0}};

@@ -45,8 +45,8 @@ static void print_order(const struct request *request, const struct dea_reduced_
   }
 }
 
-static dea_status make(struct dea_cli *cli, const void *user, const struct dea_design *design,
-                       const struct dea_device *device)
+static dea_status build(struct dea_cli *cli, const void *user, const struct dea_design *design,
+                        const struct dea_device *device)
 {
   const struct request *request = user;
   struct dea_model_settings settings = dea_model_settings_of(design);
@@ -57,7 +57,7 @@ static dea_status make(struct dea_cli *cli, const void *user, const struct dea_d
   }
   status = settings.reduced.file != NULL && request->output == NULL
                ? dea_reduced_order_read(cli->ctx, settings.reduced.file, device, &settings, &order)
-               : dea_reduced_order_make(cli->ctx, device, &settings, &order);
+               : dea_reduced_order_build(cli->ctx, device, &settings, &order);
   if (status == DEA_OK && request->output != NULL) {
     status = dea_reduced_order_write(cli->ctx, order, device, request->output);
   }
@@ -89,7 +89,7 @@ static dea_status make(struct dea_cli *cli, const void *user, const struct dea_d
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
-  return cli_with_device(cli, request->design, &request->overrides, make, request);
+  return cli_with_device(cli, request->design, &request->overrides, build, request);
 }
 
 static const struct cli_option options[] = {
@@ -110,9 +110,9 @@ static const struct cli_option options[] = {
      "write it as a joint with an actuator of MuJoCo (XML), linear about the bias", CLI_AT(mujoco)},
     {"bias", 0, CLI_TEXT, "V",
      "voltage of state space, actuator and --damping, as '3 kV'; 0 if not given", CLI_AT(bias_V),
-     cli_take_quantity, .measure = {"V", "3 kV"}},
+     cli_parse_quantity, .measure = {"V", "3 kV"}},
     {"damping", 0, CLI_TEXT, "RATIO", "of the critical damping of each mode, as 0.02",
-     CLI_AT(damping), cli_take_quantity, .measure = {"1", "0.02"}},
+     CLI_AT(damping), cli_parse_quantity, .measure = {"1", "0.02"}},
     CLI_SET_ROW('s', CLI_KEY, "compute.reduced.monitor=hub"),
     {0}};
 

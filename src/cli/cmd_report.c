@@ -76,7 +76,7 @@ static const struct cli_option options[] = {
      CLI_AT(explorer)},
     {"finger", 0, CLI_TEXT, "STIFFNESS",
      "stiffness of a fingertip that is pushed, '0.5 N/mm' if not given; '0 N/mm' for none",
-     CLI_AT(finger), cli_take_quantity, .measure = {"N/m", "0.5 N/mm"}},
+     CLI_AT(finger), cli_parse_quantity, .measure = {"N/m", "0.5 N/mm"}},
     CLI_OUTPUT_ROW(CLI_NEW_FILE, "FILE",
                    "the page; report.html in the first run's folder if not given. Replaces an "
                    "older page, but no other file"),

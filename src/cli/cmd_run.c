@@ -41,8 +41,8 @@ struct run {
   struct dea_job job;
 };
 
-static int take_model(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target)
+static int parse_model(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target)
 {
   struct cli_words *models = target;
   if (models->count == DEA_DESIGN_MODELS_MAX) {
@@ -474,7 +474,7 @@ static const struct cli_option options[] = {
              designs, DEA_DESIGN_VARIANTS_MAX + 1, "a design file is needed",
              "too many design files"),
     {"model", 'm', CLI_MODEL, "NAME", "model instead of the design's list; can be repeated",
-     CLI_AT(models), take_model, .most = DEA_DESIGN_MODELS_MAX},
+     CLI_AT(models), parse_model, .most = DEA_DESIGN_MODELS_MAX},
     {"study", 0, CLI_STUDY, "NAME", "only this study; can be repeated", CLI_AT(studies),
      .most = STUDIES_MAX, .too_many = "too many studies"},
     {"sensitivity", 0, CLI_FLAG, NULL,
@@ -490,7 +490,7 @@ static const struct cli_option options[] = {
     {"resume", 0, CLI_FLAG, NULL, "go on where the run in the folder stopped (model 3d)",
      CLI_AT(resume)},
     {"jobs", 'j', CLI_TEXT, "N", "processes for the load lines of study force (default: 1)",
-     CLI_AT(processes), cli_take_processes},
+     CLI_AT(processes), cli_parse_processes},
     {"no-figures", 0, CLI_FLAG, NULL, "no figures", CLI_AT(no_figures)},
     CLI_JSON_ROW("summary as JSON on stdout; a folder only with -o"),
     {0}};

@@ -20,8 +20,8 @@ struct request {
 
 extern char **environ;
 
-static int take_port(struct dea_cli *cli, const struct dea_command *command,
-                     const struct cli_option *option, const char *text, void *target)
+static int parse_port(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target)
 {
   double *port = target;
   char after;
@@ -137,7 +137,7 @@ static const struct cli_option options[] = {
      "folder of designs and runs, or one of its designs; here if not given", CLI_AT(what),
      .too_many = "one folder at a time"},
     {"port", 0, CLI_TEXT, "N", "port of 127.0.0.1; a free one if not given", CLI_AT(port),
-     take_port},
+     parse_port},
     {"no-browser", 0, CLI_FLAG, NULL, "only print the address", CLI_AT(no_browser)},
     {0}};
 

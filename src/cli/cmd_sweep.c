@@ -20,7 +20,7 @@ struct request {
 };
 
 /* A number of up to 6 digits; *text goes behind it. */
-static bool take_number(const char **text, size_t *out)
+static bool parse_number(const char **text, size_t *out)
 {
   size_t digits = strspn(*text, "0123456789");
   if (digits == 0 || digits > 6) {
@@ -31,13 +31,13 @@ static bool take_number(const char **text, size_t *out)
   return true;
 }
 
-static int take_shard(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target)
+static int parse_shard(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target)
 {
   struct dea_shard *shard = target;
   const char *rest = text;
-  bool good = take_number(&rest, &shard->part) && *rest++ == '/' &&
-              take_number(&rest, &shard->parts) && *rest == '\0';
+  bool good = parse_number(&rest, &shard->part) && *rest++ == '/' &&
+              parse_number(&rest, &shard->parts) && *rest == '\0';
   if (!good || shard->part < 1 || shard->part > shard->parts) {
     return cli_usage_error(cli, command, "--%s: '%.20s' is no part of parts such as 2/8",
                            option->name, text);
@@ -147,19 +147,19 @@ static const struct cli_option options[] = {
     {"output", 'o', CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .sweep)",
      CLI_AT(options.folder)},
     {"jobs", 'j', CLI_TEXT, "N", "designs at once (default: one a core)", CLI_AT(processes),
-     cli_take_processes},
+     cli_parse_processes},
     {"shard", 0, CLI_TEXT, "I/N", "only part I of N; each part may run on another computer",
-     CLI_AT(options.shard), take_shard},
+     CLI_AT(options.shard), parse_shard},
     {"slurm", 0, CLI_TEXT, "N",
      "hand N parts to Slurm as an array of jobs, with -j processes each (1 if not given), and a "
      "job "
      "that writes the tables after them; what else sbatch should know says SBATCH_PARTITION and "
      "the like",
-     CLI_AT(slurm), cli_take_processes},
+     CLI_AT(slurm), cli_parse_processes},
     {"at", 0, CLI_KEY, "KEY=VALUE",
      "of the plan sparse-grid: print quantities and their errors at this value of a variable, the "
      "design's value of the others, as CSV",
-     CLI_AT(at), cli_take_override, .most = CLI_OVERRIDES_MAX},
+     CLI_AT(at), cli_parse_override, .most = CLI_OVERRIDES_MAX},
     {"merge", 0, CLI_FLAG, NULL, "only write the tables of all parts that are there",
      CLI_AT(options.merge)},
     {"force", 'f', CLI_FLAG, NULL, "throw away the cases that are there", CLI_AT(options.force)},

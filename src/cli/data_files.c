@@ -33,7 +33,7 @@ static dea_status glob_folder(struct dea_context *ctx, const char *folder, const
   return code == GLOB_NOSPACE ? dea_fail(ctx, DEA_E_MEMORY, "out of memory") : DEA_OK;
 }
 
-static dea_status take_files(struct dea_context *ctx, const char *folder, const char *outcome,
+static dea_status read_files(struct dea_context *ctx, const char *folder, const char *outcome,
                              const glob_t *found, struct cli_data_list *list)
 {
   list->folder = dea_copy_text(ctx, folder, strlen(folder));
@@ -63,7 +63,7 @@ static dea_status find_in(struct dea_context *ctx, const char *folder, const cha
   for (size_t i = 0; i < sizeof deeper / sizeof deeper[0] && status == DEA_OK; i++) {
     status = glob_folder(ctx, folder, deeper[i], GLOB_APPEND, &found);
   }
-  status = status == DEA_OK ? take_files(ctx, folder, outcome, &found, list) : status;
+  status = status == DEA_OK ? read_files(ctx, folder, outcome, &found, list) : status;
   globfree(&found);
   return status;
 }

@@ -201,7 +201,7 @@ int main(int argc, char **argv)
   }
   cli.command_line = dea_text_get(&line);
   int code = 0;
-  argc = cli_take_common(&cli, argc, argv);
+  argc = cli_parse_common(&cli, argc, argv);
   if (argc >= 2 && strcmp(argv[1], "help") == 0) { // "dea help run" as "dea run --help"
     cli.help = true;
     argc--;

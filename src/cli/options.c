@@ -32,8 +32,8 @@ static const struct cli_option *find_letter(const struct dea_command *command, i
 }
 
 /* Puts one value where it belongs. */
-static int take(struct dea_cli *cli, const struct dea_command *command,
-                const struct cli_option *option, const char *text, void *request)
+static int parse_option(struct dea_cli *cli, const struct dea_command *command,
+                        const struct cli_option *option, const char *text, void *request)
 {
   void *target = (char *)request + option->target;
   if (option->take != NULL) {
@@ -54,8 +54,8 @@ static int take(struct dea_cli *cli, const struct dea_command *command,
 }
 
 /* The words that are no options. */
-static int take_arguments(struct dea_cli *cli, const struct dea_command *command, int count,
-                          char **words, void *request)
+static int parse_arguments(struct dea_cli *cli, const struct dea_command *command, int count,
+                           char **words, void *request)
 {
   const struct cli_option *option = command->options;
   while (option->help != NULL && option->name != NULL) {
@@ -71,7 +71,7 @@ static int take_arguments(struct dea_cli *cli, const struct dea_command *command
                : cli_usage_error(cli, command, "'%s' is not expected here", words[most]);
   }
   for (int i = 0; i < count && code == 0; i++) {
-    code = take(cli, command, option, words[i], request);
+    code = parse_option(cli, command, option, words[i], request);
   }
   return code;
 }
@@ -115,7 +115,7 @@ static const struct cli_option *find_common(char letter, const char *name)
 }
 
 /* Whether a word is common options only, such as --quiet or -vv; sets them. */
-static bool take_common(struct dea_cli *cli, const char *word)
+static bool parse_common(struct dea_cli *cli, const char *word)
 {
   bool is_long = strncmp(word, "--", 2) == 0;
   size_t count = is_long ? 1 : strlen(word) - (word[0] != '\0');
@@ -133,11 +133,11 @@ static bool take_common(struct dea_cli *cli, const char *word)
   return count > 0;
 }
 
-int cli_take_common(struct dea_cli *cli, int argc, char **argv)
+int cli_parse_common(struct dea_cli *cli, int argc, char **argv)
 {
   int kept = 0;
   for (int i = 0; i < argc; i++) {
-    if (!take_common(cli, argv[i])) {
+    if (!parse_common(cli, argv[i])) {
       argv[kept++] = argv[i];
     }
   }
@@ -203,18 +203,18 @@ int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, 
       return cli_usage_error(cli, command, "option '--%s' has an empty value", option->name);
     }
     given[option - command->options] = true;
-    code = take(cli, command, option, optarg, request);
+    code = parse_option(cli, command, option, optarg, request);
     if (option->kind == CLI_NEW_FILE && code == 0) {
       dea_status status = check_written(cli, argc, argv, optind - 1, optarg);
       code = status == DEA_OK ? 0 : cli_report(cli, status);
     }
   }
   code = code != 0 ? code : check_exclusions(cli, command, given);
-  return code != 0 ? code : take_arguments(cli, command, argc - optind, argv + optind, request);
+  return code != 0 ? code : parse_arguments(cli, command, argc - optind, argv + optind, request);
 }
 
-int cli_take_override(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target)
+int cli_parse_override(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target)
 {
   struct cli_overrides *overrides = target;
   char *equals = strchr(text, '=');
@@ -226,8 +226,8 @@ int cli_take_override(struct dea_cli *cli, const struct dea_command *command,
   return 0;
 }
 
-int cli_take_quantity(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target)
+int cli_parse_quantity(struct dea_cli *cli, const struct dea_command *command,
+                       const struct cli_option *option, const char *text, void *target)
 {
   char why[DEA_WHY_SIZE];
   double *value = target;
@@ -241,8 +241,8 @@ int cli_take_quantity(struct dea_cli *cli, const struct dea_command *command,
                                option->name, text, option->measure.example);
 }
 
-int cli_take_formats(struct dea_cli *cli, const struct dea_command *command,
-                     const struct cli_option *option, const char *text, void *target)
+int cli_parse_formats(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target)
 {
   struct dea_plot_format *format = target;
   (void)option;
@@ -265,8 +265,8 @@ int cli_take_formats(struct dea_cli *cli, const struct dea_command *command,
   }
 }
 
-int cli_take_width(struct dea_cli *cli, const struct dea_command *command,
-                   const struct cli_option *option, const char *text, void *target)
+int cli_parse_width(struct dea_cli *cli, const struct dea_command *command,
+                    const struct cli_option *option, const char *text, void *target)
 {
   struct dea_plot_format *format = target;
   const char *end;
@@ -321,8 +321,8 @@ int cli_with_device(struct dea_cli *cli, const char *file, const struct cli_over
   return code;
 }
 
-int cli_take_processes(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target)
+int cli_parse_processes(struct dea_cli *cli, const struct dea_command *command,
+                        const struct cli_option *option, const char *text, void *target)
 {
   char *end;
   const double count = strtod(text, &end);

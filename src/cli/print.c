@@ -30,8 +30,8 @@ const char *cli_plain(const char *text, char out[CLI_PLAIN_SIZE])
   return out;
 }
 
-static void say(struct dea_cli *cli, const struct dea_location *location,
-                enum dea_severity severity, const char *text)
+static void print_line(struct dea_cli *cli, const struct dea_location *location,
+                       enum dea_severity severity, const char *text)
 {
   struct dea_text line = {.ctx = cli->ctx};
   if (location == NULL || location->file == NULL || location->file[0] == '\0') {
@@ -94,7 +94,7 @@ static void print_findings(struct dea_cli *cli)
     const struct dea_finding *finding = sorted != NULL ? sorted[i] : &findings[i];
     bool repeated = sorted != NULL && !cli->verbose && is_repeated(sorted, i);
     if (!repeated && !(finding->severity == DEA_NOTE && cli->quiet)) {
-      say(cli, &finding->location, finding->severity, finding->text);
+      print_line(cli, &finding->location, finding->severity, finding->text);
     }
   }
   dea_free(cli->ctx, sorted);
@@ -107,7 +107,7 @@ int cli_report(struct dea_cli *cli, dea_status status)
   bool said = dea_finding_count(cli->ctx, DEA_ERROR) > 0 && status == DEA_E_DESIGN;
   if (status != DEA_OK && !said) {
     const char *message = dea_context_message(cli->ctx);
-    say(cli, NULL, DEA_ERROR, message[0] != '\0' ? message : dea_status_message(status));
+    print_line(cli, NULL, DEA_ERROR, message[0] != '\0' ? message : dea_status_message(status));
   }
   if (status != DEA_OK && cli->verbose) {
     fprintf(stderr, "dea: in %s\n", dea_context_chain(cli->ctx));

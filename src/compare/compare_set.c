@@ -256,8 +256,8 @@ static dea_status add_profile(struct dea_context *ctx, struct dea_compare_set *s
   struct dea_set_misfit *p = &set->misfits[set->misfit_count];
   *p = (struct dea_set_misfit){
       .kind = DEA_SET_PROFILE, .curve = curve, .measured = measured, .half = half};
-  DEA_TRY(ctx, dea_film_line_make(&set->memory, set->curves[curve].result, set->curves[curve].model,
-                                  m->voltage_V, half, &p->line));
+  DEA_TRY(ctx, dea_film_line_build(&set->memory, set->curves[curve].result,
+                                   set->curves[curve].model, m->voltage_V, half, &p->line));
   DEA_TRY(ctx, dea_film_line_compare(&set->memory, &p->line, &m->z, &p->misfit));
   set->misfit_count += p->misfit.count > 0 ? 1U : 0U;
   return p->misfit.count == 0 || !p->line.between_records
@@ -426,22 +426,22 @@ static json_t *misfit_json(const struct dea_compare_set *set, const struct dea_s
   static const char *const places[] = {"largest_at_V", "largest_at_m", "largest_at_s"};
   const struct dea_misfit *m = &of->misfit;
   json_t *object = json_object();
-  dea_json_put_text(object, "quantity", of->kind == DEA_SET_PROFILE ? "z_m" : m->quantity->key);
-  dea_json_put_text(object, "unit", m->quantity->si_unit);
-  dea_json_put_count(object, "points", m->count);
-  dea_json_put(object, "rms", m->rms);
-  dea_json_put(object, "largest", m->largest);
-  dea_json_put(object, places[of->kind], m->largest_at);
-  dea_json_put(object, "bias", m->bias);
-  dea_json_put(object, "range", m->range);
-  dea_json_put(object, "relative_rms", m->relative_rms);
-  dea_json_put(object, "relative_largest", m->relative_largest);
-  dea_json_put(object, "a_std_rms", dea_misfit_a_std_rms(m));
+  dea_json_add_text(object, "quantity", of->kind == DEA_SET_PROFILE ? "z_m" : m->quantity->key);
+  dea_json_add_text(object, "unit", m->quantity->si_unit);
+  dea_json_add_count(object, "points", m->count);
+  dea_json_add(object, "rms", m->rms);
+  dea_json_add(object, "largest", m->largest);
+  dea_json_add(object, places[of->kind], m->largest_at);
+  dea_json_add(object, "bias", m->bias);
+  dea_json_add(object, "range", m->range);
+  dea_json_add(object, "relative_rms", m->relative_rms);
+  dea_json_add(object, "relative_largest", m->relative_largest);
+  dea_json_add(object, "a_std_rms", dea_misfit_a_std_rms(m));
   if (m->std_count > 0) {
-    dea_json_put_count(object, "std_points", m->std_count);
-    dea_json_put(object, "chi_square_per_point", m->chi_square);
-    dea_json_put(object, "within_1_std", m->within_1_std);
-    dea_json_put(object, "within_2_std", m->within_2_std);
+    dea_json_add_count(object, "std_points", m->std_count);
+    dea_json_add(object, "chi_square_per_point", m->chi_square);
+    dea_json_add(object, "within_1_std", m->within_1_std);
+    dea_json_add(object, "within_2_std", m->within_2_std);
   }
   if (of->kind == DEA_SET_VOLTAGE) {
     if (!isnan(tolerance)) {
@@ -449,16 +449,16 @@ static json_t *misfit_json(const struct dea_compare_set *set, const struct dea_s
     }
     return object;
   }
-  dea_json_put_text(object, "a", set->curves[of->curve].name);
+  dea_json_add_text(object, "a", set->curves[of->curve].name);
   if (of->kind == DEA_SET_HISTORY) {
-    dea_json_put(object, "shift_s", of->clock.shift_s);
-    dea_json_put_count(object, "edges", of->clock.edges);
+    dea_json_add(object, "shift_s", of->clock.shift_s);
+    dea_json_add_count(object, "edges", of->clock.edges);
     return object;
   }
   if (of->line.directed) {
-    dea_json_put_text(object, "half", dea_half_names[of->half]);
+    dea_json_add_text(object, "half", dea_half_names[of->half]);
   }
-  dea_json_put(object, "voltage_V", set->measured->profiles[of->measured].voltage_V);
+  dea_json_add(object, "voltage_V", set->measured->profiles[of->measured].voltage_V);
   return object;
 }
 
@@ -468,17 +468,17 @@ json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance
   json_t *others[] = {[DEA_SET_PROFILE] = json_array(), [DEA_SET_HISTORY] = json_array()};
   json_object_set_new(root, "schema", json_integer(1));
   if (!isnan(tolerance)) {
-    dea_json_put(root, "tolerance", tolerance);
+    dea_json_add(root, "tolerance", tolerance);
   }
-  dea_json_put_text(root, "reference", set->reference);
+  dea_json_add_text(root, "reference", set->reference);
   for (size_t i = 0; i < set->misfit_count; i++) {
     const struct dea_set_misfit *m = &set->misfits[i];
     if (m->kind == DEA_SET_VOLTAGE && (i == 0 || m->curve != set->misfits[i - 1].curve)) {
       char beside[DEA_LABEL_SIZE];
       json_t *curve = json_object();
       dea_compare_set_beside(set, m->curve, beside);
-      dea_json_put_text(curve, "a", set->curves[m->curve].name);
-      dea_json_put_text(curve, "b", beside);
+      dea_json_add_text(curve, "a", set->curves[m->curve].name);
+      dea_json_add_text(curve, "b", beside);
       quantities = json_array();
       json_object_set_new(curve, "quantities", quantities);
       json_array_append_new(curves, curve);

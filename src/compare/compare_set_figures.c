@@ -486,7 +486,7 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
   struct dea_set_figures f = {.folder = {.ctx = ctx, .format = format, .path = directory},
                               .memory = {.ctx = ctx},
                               .set = set};
-  dea_status status = dea_folder_make(ctx, directory);
+  dea_status status = dea_folder_create(ctx, directory);
   if (status == DEA_OK) {
     status = set->pairs ? draw_pairs(&f) : draw_quantities(&f);
   }

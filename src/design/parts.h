@@ -22,7 +22,7 @@ enum {
 };
 
 /* How a shape is made. */
-enum dea_parts_make {
+enum dea_parts_build {
   DEA_MAKE_PRIMITIVE, // of `type`
   DEA_MAKE_UNION,
   DEA_MAKE_DIFFERENCE,
@@ -35,7 +35,7 @@ enum dea_parts_make {
 
 struct dea_parts_shape {
   struct dea_label name, kind;
-  enum dea_parts_make make;
+  enum dea_parts_build make;
   const struct dea_shape_type *type; // of a primitive
   struct dea_quantity value[DEA_SHAPE_PARAMETERS_MAX];
   const struct dea_node *points; // as written

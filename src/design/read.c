@@ -13,7 +13,7 @@ static size_t sweep_count(double from, double to, double step)
   return steps < DEA_DESIGN_VOLTAGES_MAX ? (size_t)steps + 1 : 0;
 }
 
-static dea_status make_sweep(struct dea_context *ctx, struct dea_design_raw *raw)
+static dea_status build_sweep(struct dea_context *ctx, struct dea_design_raw *raw)
 {
   struct dea_design *design = &raw->design;
   double from = raw->from_V.si, to = raw->to_V.si, step = raw->step_V.si;
@@ -67,7 +67,7 @@ static dea_status read_voltages(struct dea_context *ctx, struct dea_design_raw *
   struct dea_design *design = &raw->design;
   if (raw->voltage_count == 0) {
     design->compute.voltages_place = raw->to_V.location;
-    return make_sweep(ctx, raw);
+    return build_sweep(ctx, raw);
   }
   design->compute.voltages_place = raw->voltages_V[0].location;
   design->compute.voltages_V =
@@ -89,7 +89,7 @@ double dea_design_highest_V(const struct dea_design *design)
   return highest_V;
 }
 
-static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
+static dea_status parse_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
 {
   DEA_TRY(ctx, read_voltages(ctx, raw));
   return raw->back.value == 1 ? add_way_back(ctx, &raw->design) : DEA_OK;
@@ -97,7 +97,7 @@ static dea_status take_voltages(struct dea_context *ctx, struct dea_design_raw *
 
 /* The end of the path: by default 1.5 times the pre-stretch, which is past pull-in of usual films,
  * and what the sweep reaches (study/path.c). */
-static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
+static dea_status read_path(struct dea_context *ctx, struct dea_design *design)
 {
   struct dea_quantity *end = &design->compute.path_max_stretch;
   double pre_stretch = design->pre_stretch.si;
@@ -115,7 +115,7 @@ static dea_status take_path(struct dea_context *ctx, struct dea_design *design)
   return DEA_OK;
 }
 
-static dea_status take_drive(const struct dea_reader *reader, struct dea_design *design)
+static dea_status read_drive(const struct dea_reader *reader, struct dea_design *design)
 {
   struct dea_context *ctx = reader->ctx;
   if (design->drive.section != NULL) {
@@ -126,7 +126,7 @@ static dea_status take_drive(const struct dea_reader *reader, struct dea_design 
 }
 
 /* Sections of studies, whose checks may look at the whole design. */
-static dea_status take_sections(struct dea_context *ctx, const struct dea_design_sections *sections,
+static dea_status read_sections(struct dea_context *ctx, const struct dea_design_sections *sections,
                                 struct dea_design *design)
 {
   design->compute.settings_count = sections->count;
@@ -170,7 +170,7 @@ static dea_status name_models(struct dea_context *ctx, const struct dea_design_s
   return DEA_OK;
 }
 
-static void take_figures(struct dea_design_raw *raw)
+static void set_figures(struct dea_design_raw *raw)
 {
   for (size_t i = 0; i < raw->figure_count; i++) {
     raw->design.report.svg |= raw->figures[i].value == DEA_FIGURE_SVG;
@@ -180,7 +180,7 @@ static void take_figures(struct dea_design_raw *raw)
 }
 
 /* Voltages at which fields are wanted must be among those of the sweep. */
-static dea_status take_fields(struct dea_context *ctx, struct dea_design_raw *raw)
+static dea_status read_fields(struct dea_context *ctx, struct dea_design_raw *raw)
 {
   struct dea_design *design = &raw->design;
   for (size_t i = 0; i < raw->fields_at_count; i++) {
@@ -200,7 +200,7 @@ static dea_status take_fields(struct dea_context *ctx, struct dea_design_raw *ra
   return DEA_OK;
 }
 
-static dea_status take_materials(const struct dea_reader *reader, struct dea_design_raw *raw)
+static dea_status read_materials(const struct dea_reader *reader, struct dea_design_raw *raw)
 {
   struct dea_context *ctx = reader->ctx;
   struct dea_design *design = &raw->design;
@@ -270,14 +270,14 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
     design->parts->place = plies->key_place;
   }
   if (root->kind == DEA_NODE_SECTION) {
-    DEA_TRY(ctx, take_materials(&reader, raw));
-    DEA_TRY(ctx, take_voltages(ctx, raw));
-    DEA_TRY(ctx, take_path(ctx, design));
+    DEA_TRY(ctx, read_materials(&reader, raw));
+    DEA_TRY(ctx, parse_voltages(ctx, raw));
+    DEA_TRY(ctx, read_path(ctx, design));
     DEA_TRY(ctx, check_models(ctx, design));
-    DEA_TRY(ctx, take_drive(&reader, design));
-    DEA_TRY(ctx, take_sections(ctx, source->sections, design));
-    take_figures(raw);
-    DEA_TRY(ctx, take_fields(ctx, raw));
+    DEA_TRY(ctx, read_drive(&reader, design));
+    DEA_TRY(ctx, read_sections(ctx, source->sections, design));
+    set_figures(raw);
+    DEA_TRY(ctx, read_fields(ctx, raw));
   }
   if (dea_finding_count(ctx, DEA_ERROR) > errors) {
     DEA_TRY(ctx, name_models(ctx, source->sections, design));

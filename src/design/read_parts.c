@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Places and copies of the names in the key `of` of a shape. */
-static void take_of(const struct dea_node *node, struct dea_parts_shape *shape)
+static void read_shapes(const struct dea_node *node, struct dea_parts_shape *shape)
 {
   const struct dea_node *of = dea_node_find(node, "of");
   if (of == NULL || shape->of_count == 0) {
@@ -19,7 +19,7 @@ static void take_of(const struct dea_node *node, struct dea_parts_shape *shape)
 }
 
 /* Numbers of a DEA_FIELD_ROWS of two columns into the parts' memory. */
-static dea_status take_rows(const struct dea_reader *reader, struct dea_parts *parts,
+static dea_status read_rows(const struct dea_reader *reader, struct dea_parts *parts,
                             const struct dea_node *node, const char *key,
                             const struct dea_measure due[2], size_t least, const double (**out)[2],
                             size_t *count)
@@ -87,9 +87,9 @@ static dea_status read_shape(const struct dea_reader *reader, const struct dea_s
   DEA_TRY(reader->ctx, dea_schema_read(reader, &schema->record[kind], node, path, shape));
   shape->make = schema->make[kind];
   shape->type = schema->type[kind];
-  take_of(node, shape);
+  read_shapes(node, shape);
   return dea_finding_count(reader->ctx, DEA_ERROR) == errors
-             ? take_rows(reader, parts, shape->points, "points", point, 1, &shape->point_m,
+             ? read_rows(reader, parts, shape->points, "points", point, 1, &shape->point_m,
                          &shape->point_count)
              : DEA_OK;
 }
@@ -99,7 +99,7 @@ static dea_status read_table(const struct dea_reader *reader, struct dea_parts *
 {
   static const struct dea_measure shift[2] = {{"m", "1 mm"}, {"N", "5 mN"}};
   static const struct dea_measure turn[2] = {{"radian", "10 degree"}, {"N.m", "1 mN.m"}};
-  DEA_TRY(reader->ctx, take_rows(reader, parts, spring->table, "table",
+  DEA_TRY(reader->ctx, read_rows(reader, parts, spring->table, "table",
                                  spring->direction.value < 3 ? shift : turn, 2, &spring->row,
                                  &spring->row_count));
   for (size_t i = 1; i < spring->row_count; i++) {
@@ -157,7 +157,7 @@ static dea_status check_all_names(const struct dea_reader *reader, const struct 
     }                                                                                              \
   } while (0)
 
-static dea_status take_lists(const struct dea_parts_raw *raw, struct dea_parts *parts)
+static dea_status read_lists(const struct dea_parts_raw *raw, struct dea_parts *parts)
 {
   parts->shapes = dea_arena_alloc(&parts->memory, raw->shape_count, sizeof *parts->shapes);
   parts->shape_count = parts->shapes != NULL ? raw->shape_count : 0;
@@ -210,7 +210,7 @@ dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shap
   *out = parts;
   DEA_TRY_MEMORY(parts != NULL);
   *parts = (struct dea_parts){.ctx = ctx, .memory = {.ctx = ctx}};
-  DEA_TRY(ctx, take_lists(raw, parts));
+  DEA_TRY(ctx, read_lists(raw, parts));
   for (size_t i = 0; i < parts->shape_count; i++) {
     if (raw->shapes[i] != NULL) { // else it is no section, which was said
       DEA_TRY(ctx, read_shape(reader, schema, raw->shapes[i], i, parts));

@@ -25,7 +25,7 @@ enum { DEA_SHAPE_KINDS_MAX = 24, DEA_SHAPE_FIELDS_MAX = DEA_SHAPE_PARAMETERS_MAX
 struct dea_shape_schema {
   struct dea_record record[DEA_SHAPE_KINDS_MAX];
   const struct dea_record *kinds[DEA_SHAPE_KINDS_MAX + 1]; // [count], ended by NULL
-  enum dea_parts_make make[DEA_SHAPE_KINDS_MAX];
+  enum dea_parts_build make[DEA_SHAPE_KINDS_MAX];
   const struct dea_shape_type *type[DEA_SHAPE_KINDS_MAX];
   struct dea_field field[DEA_SHAPE_KINDS_MAX][DEA_SHAPE_FIELDS_MAX];
   size_t count;

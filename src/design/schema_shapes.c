@@ -77,7 +77,7 @@ static const struct dea_field drawing_fields[] = {
 
 static const struct {
   const char *name, *doc;
-  enum dea_parts_make make;
+  enum dea_parts_build make;
   const struct dea_field *fields;
   size_t count;
 } made[] = {

@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Fails where something is not as in a disc: "ply 'hub'", "is no part of one". */
-static dea_status ask(struct dea_context *ctx, bool good, const char *what, const char *name,
-                      const char *how)
+static dea_status require(struct dea_context *ctx, bool good, const char *what, const char *name,
+                          const char *how)
 {
   return good ? DEA_OK
               : dea_fail(ctx, DEA_E_DESIGN,
@@ -62,27 +62,29 @@ static dea_status find_electrodes(struct dea_context *ctx, const struct dea_layo
 {
   const struct dea_layout_electrode *e = l->electrodes;
   const struct dea_layout_channel *drive = &l->channels[1];
-  DEA_TRY(ctx, ask(ctx, l->electrode_count > 0, "ply", l->plies[0].name, "has no electrodes"));
-  DEA_TRY(ctx, ask(ctx, l->electrode_count > 1, "electrode", e[0].name, "has no other one"));
-  DEA_TRY(ctx, ask(ctx, l->channel_count > 1, "channel", l->channels[0].name, "is the only one"));
-  DEA_TRY(ctx, ask(ctx, l->channel_count == 2, "channel", l->channels[l->channel_count - 1].name,
-                   "is one more than ground and a driven one"));
-  DEA_TRY(ctx, ask(ctx, drive->ratio == 1 && drive->own_V == 0 && drive->waveform == NULL,
-                   "channel", drive->name, "has a voltage of its own"));
-  DEA_TRY(ctx, ask(ctx, l->electrode_count == 2, "electrode", e[l->electrode_count - 1].name,
-                   "is one more than two"));
+  DEA_TRY(ctx, require(ctx, l->electrode_count > 0, "ply", l->plies[0].name, "has no electrodes"));
+  DEA_TRY(ctx, require(ctx, l->electrode_count > 1, "electrode", e[0].name, "has no other one"));
   DEA_TRY(ctx,
-          ask(ctx, e[0].ply == e[1].ply && e[0].top != e[1].top && e[0].channel != e[1].channel,
-              "electrode", e[1].name, "is not across the film from the other one"));
+          require(ctx, l->channel_count > 1, "channel", l->channels[0].name, "is the only one"));
+  DEA_TRY(ctx,
+          require(ctx, l->channel_count == 2, "channel", l->channels[l->channel_count - 1].name,
+                  "is one more than ground and a driven one"));
+  DEA_TRY(ctx, require(ctx, drive->ratio == 1 && drive->own_V == 0 && drive->waveform == NULL,
+                       "channel", drive->name, "has a voltage of its own"));
+  DEA_TRY(ctx, require(ctx, l->electrode_count == 2, "electrode", e[l->electrode_count - 1].name,
+                       "is one more than two"));
+  DEA_TRY(ctx,
+          require(ctx, e[0].ply == e[1].ply && e[0].top != e[1].top && e[0].channel != e[1].channel,
+                  "electrode", e[1].name, "is not across the film from the other one"));
   *film = e[0].ply;
   *out = circle_of(l, e[0].region);
-  DEA_TRY(ctx, ask(ctx, out->radius_m > 0, "electrode", e[0].name, "is not round"));
+  DEA_TRY(ctx, require(ctx, out->radius_m > 0, "electrode", e[0].name, "is not round"));
   const struct circle other = circle_of(l, e[1].region);
   return DEA_CHAIN(
-      ctx, ask(ctx, is_same(out, &other), "electrode", e[1].name, "is not as the other one"));
+      ctx, require(ctx, is_same(out, &other), "electrode", e[1].name, "is not as the other one"));
 }
 
-static dea_status take_film(struct dea_context *ctx, const struct dea_layout *l, size_t film,
+static dea_status read_film(struct dea_context *ctx, const struct dea_layout *l, size_t film,
                             const struct circle *electrode, struct dea_device *out)
 {
   const struct dea_layout_ply *ply = &l->plies[film];
@@ -90,27 +92,28 @@ static dea_status take_film(struct dea_context *ctx, const struct dea_layout *l,
   const double off =
       hypot(frame.centre[0] - electrode->centre[0], frame.centre[1] - electrode->centre[1]);
   const bool centred = off <= DEA_GEOMETRY_SNAP * frame.radius_m;
-  DEA_TRY(ctx, ask(ctx, frame.radius_m > 0, "ply", ply->name, "is not round"));
-  DEA_TRY(ctx, ask(ctx, centred, "electrode", l->electrodes[0].name,
-                   "is not in the middle of the film"));
-  DEA_TRY(ctx, ask(ctx, electrode->radius_m < frame.radius_m * (1 - DEA_GEOMETRY_SNAP), "electrode",
-                   l->electrodes[0].name, "does not end before the edge of the film"));
-  DEA_TRY(ctx, ask(ctx, dea_ply_layers(ply) == 1, "ply", ply->name, "has several layers"));
-  DEA_TRY(ctx, ask(ctx, ply->pre_stretch[0] == ply->pre_stretch[1], "ply", ply->name,
-                   "has two pre-stretches"));
-  DEA_TRY(ctx, ask(ctx, ply->material.law == NULL || !ply->material.law->anisotropic, "ply",
-                   ply->name, "has a direction of its own"));
+  DEA_TRY(ctx, require(ctx, frame.radius_m > 0, "ply", ply->name, "is not round"));
+  DEA_TRY(ctx, require(ctx, centred, "electrode", l->electrodes[0].name,
+                       "is not in the middle of the film"));
+  DEA_TRY(ctx,
+          require(ctx, electrode->radius_m < frame.radius_m * (1 - DEA_GEOMETRY_SNAP), "electrode",
+                  l->electrodes[0].name, "does not end before the edge of the film"));
+  DEA_TRY(ctx, require(ctx, dea_ply_layers(ply) == 1, "ply", ply->name, "has several layers"));
+  DEA_TRY(ctx, require(ctx, ply->pre_stretch[0] == ply->pre_stretch[1], "ply", ply->name,
+                       "has two pre-stretches"));
+  DEA_TRY(ctx, require(ctx, ply->material.law == NULL || !ply->material.law->anisotropic, "ply",
+                       ply->name, "has a direction of its own"));
   for (size_t i = 0; i < l->support_count; i++) {
     const struct dea_layout_support *s = &l->supports[i];
     const struct circle held = circle_of(l, s->region);
     const double *move = s->move_m;
-    DEA_TRY(ctx, ask(ctx,
-                     dea_support_is_frame(s) && !s->hinged && s->plies == 0 &&
-                         is_same(&frame, &held) && move[0] == 0 && move[1] == 0 && move[2] == 0,
-                     "the support of", l->regions[s->region].name,
-                     "does not clamp the edge of the film"));
+    DEA_TRY(ctx, require(ctx,
+                         dea_support_is_frame(s) && !s->hinged && s->plies == 0 &&
+                             is_same(&frame, &held) && move[0] == 0 && move[1] == 0 && move[2] == 0,
+                         "the support of", l->regions[s->region].name,
+                         "does not clamp the edge of the film"));
   }
-  DEA_TRY(ctx, ask(ctx, l->support_count > 0, "ply", ply->name, "has no clamped edge"));
+  DEA_TRY(ctx, require(ctx, l->support_count > 0, "ply", ply->name, "has no clamped edge"));
   out->centre_m[0] = frame.centre[0];
   out->centre_m[1] = frame.centre[1];
   out->film = ply->material;
@@ -142,7 +145,7 @@ static dea_status compare(struct dea_context *ctx, const struct dea_material *a,
 
 /* Electrodes with stiffness: a ply like them below the film, and the same one above. *next: the
  * first ply above these and the film. */
-static dea_status take_stiffness(struct dea_context *ctx, const struct dea_layout *l, size_t film,
+static dea_status read_stiffness(struct dea_context *ctx, const struct dea_layout *l, size_t film,
                                  const struct circle *electrode, size_t *next,
                                  struct dea_device *out)
 {
@@ -152,26 +155,26 @@ static dea_status take_stiffness(struct dea_context *ctx, const struct dea_layou
     const struct dea_layout_ply *ply = &l->plies[i];
     const struct circle own = circle_of(l, ply->region);
     const bool like = own.radius_m > 0 && is_same(electrode, &own);
-    DEA_TRY(ctx, ask(ctx, i == film || i >= *next || like, "ply", ply->name,
-                     "is neither the film nor of its electrodes' shape"));
-    DEA_TRY(ctx, ask(ctx, i < *next ? i == film || stiff : !like, "ply", ply->name,
-                     "is not one of two electrodes, below and above the film"));
-    DEA_TRY(ctx, ask(ctx,
-                     i == film || !like ||
-                         (ply->pre_stretch[0] == out->pre_stretch &&
-                          ply->pre_stretch[1] == out->pre_stretch),
-                     "ply", ply->name, "is not stretched with the film"));
+    DEA_TRY(ctx, require(ctx, i == film || i >= *next || like, "ply", ply->name,
+                         "is neither the film nor of its electrodes' shape"));
+    DEA_TRY(ctx, require(ctx, i < *next ? i == film || stiff : !like, "ply", ply->name,
+                         "is not one of two electrodes, below and above the film"));
+    DEA_TRY(ctx, require(ctx,
+                         i == film || !like ||
+                             (ply->pre_stretch[0] == out->pre_stretch &&
+                              ply->pre_stretch[1] == out->pre_stretch),
+                         "ply", ply->name, "is not stretched with the film"));
   }
-  DEA_TRY(ctx, ask(ctx, film <= 1 && l->ply_count >= *next, "ply", l->plies[0].name,
-                   "is not one of two electrodes, below and above the film"));
+  DEA_TRY(ctx, require(ctx, film <= 1 && l->ply_count >= *next, "ply", l->plies[0].name,
+                       "is not one of two electrodes, below and above the film"));
   if (!stiff) {
     return DEA_OK;
   }
   const struct dea_layout_ply *below = &l->plies[0], *above = &l->plies[2];
   bool same;
   DEA_TRY(ctx, compare(ctx, &below->material, &above->material, &same));
-  DEA_TRY(ctx, ask(ctx, same && below->thickness_m == above->thickness_m, "ply", above->name,
-                   "is not as that below the film"));
+  DEA_TRY(ctx, require(ctx, same && below->thickness_m == above->thickness_m, "ply", above->name,
+                       "is not as that below the film"));
   out->electrode = below->material;
   out->electrode_thickness_m = below->thickness_unstretched_m;
   return DEA_OK;
@@ -256,35 +259,35 @@ static dea_status compare_fibres(struct dea_context *ctx, const struct dea_layou
                                  const struct dea_layout *wanted, const struct dea_device *disc)
 {
   const char *name = l->plies[l->ply_count - 1].name;
-  DEA_TRY(ctx, ask(ctx, l->ply_count == wanted->ply_count, "under ply", name,
-                   "the plies are not those of fibres on a film"));
+  DEA_TRY(ctx, require(ctx, l->ply_count == wanted->ply_count, "under ply", name,
+                       "the plies are not those of fibres on a film"));
   for (size_t i = first; i < l->ply_count; i++) {
     const struct dea_layout_ply *a = &l->plies[i], *b = &wanted->plies[i];
     const bool glue = b->kind == DEA_PLY_GLUE;
-    DEA_TRY(ctx,
-            ask(ctx,
-                is_like(&l->regions[a->region].region, &wanted->regions[b->region].region, disc),
-                "ply", a->name, "has not the shape that it has below radial fibres"));
-    DEA_TRY(ctx, ask(ctx, fabs(a->thickness_m - b->thickness_m) <= alike * b->thickness_m, "ply",
-                     a->name, "is not as thick as the electrodes that it lies beside"));
-    DEA_TRY(ctx, ask(ctx, a->pre_stretch[0] == 1 && a->pre_stretch[1] == 1, "ply", a->name,
-                     "is stretched"));
-    DEA_TRY(ctx, ask(ctx, is_linear(&a->material), "ply", a->name, "is not linear elastic"));
-    DEA_TRY(ctx, ask(ctx,
-                     a->material.young_modulus_Pa == b->material.young_modulus_Pa &&
-                         (!glue || a->material.poisson_ratio == b->material.poisson_ratio),
-                     "ply", a->name, "is of another material than a disc has there"));
-    DEA_TRY(ctx, ask(ctx,
-                     a->material.density_kg_per_m3 == b->material.density_kg_per_m3 ||
-                         (glue && !(a->material.density_kg_per_m3 > 0)),
-                     "ply", a->name, "is not as dense as the film, which a disc's glue is"));
+    DEA_TRY(ctx, require(ctx,
+                         is_like(&l->regions[a->region].region, &wanted->regions[b->region].region,
+                                 disc),
+                         "ply", a->name, "has not the shape that it has below radial fibres"));
+    DEA_TRY(ctx, require(ctx, fabs(a->thickness_m - b->thickness_m) <= alike * b->thickness_m,
+                         "ply", a->name, "is not as thick as the electrodes that it lies beside"));
+    DEA_TRY(ctx, require(ctx, a->pre_stretch[0] == 1 && a->pre_stretch[1] == 1, "ply", a->name,
+                         "is stretched"));
+    DEA_TRY(ctx, require(ctx, is_linear(&a->material), "ply", a->name, "is not linear elastic"));
+    DEA_TRY(ctx, require(ctx,
+                         a->material.young_modulus_Pa == b->material.young_modulus_Pa &&
+                             (!glue || a->material.poisson_ratio == b->material.poisson_ratio),
+                         "ply", a->name, "is of another material than a disc has there"));
+    DEA_TRY(ctx, require(ctx,
+                         a->material.density_kg_per_m3 == b->material.density_kg_per_m3 ||
+                             (glue && !(a->material.density_kg_per_m3 > 0)),
+                         "ply", a->name, "is not as dense as the film, which a disc's glue is"));
   }
   return DEA_OK;
 }
 
 /* Fibres, from the ply `first` on: alike, radial, evenly spread. Below them may be their glue, and
  * beside electrodes of a thickness what continues these. */
-static dea_status take_fibres(struct dea_context *ctx, const struct dea_layout *l, size_t first,
+static dea_status read_fibres(struct dea_context *ctx, const struct dea_layout *l, size_t first,
                               struct dea_device *out)
 {
   static const double turn = 6.28318530717958647692;
@@ -292,9 +295,9 @@ static dea_status take_fibres(struct dea_context *ctx, const struct dea_layout *
   const struct dea_region *region = &l->regions[top->region].region;
   struct dea_layout *wanted;
   const struct dea_contour fibre = dea_region_contour(region, 0);
-  DEA_TRY(ctx, ask(ctx, measure_fibre(&fibre, out), "ply", top->name,
-                   "is neither the film nor of its electrodes' shape, nor are its parts radial "
-                   "fibres that end at a circle"));
+  DEA_TRY(ctx, require(ctx, measure_fibre(&fibre, out), "ply", top->name,
+                       "is neither the film nor of its electrodes' shape, nor are its parts radial "
+                       "fibres that end at a circle"));
   out->fibre_count = (int)region->contour_count;
   const double step = turn / out->fibre_count, angle = fmod(out->angle_rad + turn, step);
   out->angle_rad = angle > alike && step - angle > alike ? angle : 0;
@@ -363,19 +366,19 @@ static dea_status find(struct dea_context *ctx, const struct dea_layout *l, stru
 {
   struct circle electrode = {.radius_m = 0};
   size_t film = 0, next;
-  DEA_TRY(ctx, ask(ctx, l->body_count == 0, "body", l->body_count > 0 ? l->bodies[0].name : "",
-                   "is no part of one"));
-  DEA_TRY(ctx, ask(ctx, l->pressure_count == 0, "the pressure on ply",
-                   l->pressure_count > 0 ? l->plies[l->pressures[0].ply].name : "",
-                   "is no load of one"));
+  DEA_TRY(ctx, require(ctx, l->body_count == 0, "body", l->body_count > 0 ? l->bodies[0].name : "",
+                       "is no part of one"));
+  DEA_TRY(ctx, require(ctx, l->pressure_count == 0, "the pressure on ply",
+                       l->pressure_count > 0 ? l->plies[l->pressures[0].ply].name : "",
+                       "is no load of one"));
   for (size_t i = 0; i < l->ply_count; i++) {
-    DEA_TRY(ctx, ask(ctx, dea_ply_layers(&l->plies[i]) == 1, "ply", l->plies[i].name,
-                     "is of several layers"));
+    DEA_TRY(ctx, require(ctx, dea_ply_layers(&l->plies[i]) == 1, "ply", l->plies[i].name,
+                         "is of several layers"));
   }
   DEA_TRY(ctx, find_electrodes(ctx, l, &film, &electrode));
-  DEA_TRY(ctx, take_film(ctx, l, film, &electrode, out));
-  DEA_TRY(ctx, take_stiffness(ctx, l, film, &electrode, &next, out));
-  DEA_TRY(ctx, next < l->ply_count ? take_fibres(ctx, l, next, out) : DEA_OK);
+  DEA_TRY(ctx, read_film(ctx, l, film, &electrode, out));
+  DEA_TRY(ctx, read_stiffness(ctx, l, film, &electrode, &next, out));
+  DEA_TRY(ctx, next < l->ply_count ? read_fibres(ctx, l, next, out) : DEA_OK);
   out->disc = true;
   return DEA_OK;
 }

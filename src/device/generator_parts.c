@@ -171,7 +171,7 @@ static dea_status check_dielectrics(struct maker *m)
 // Electrodes and channels ------------------------------------------------------------------------
 
 /* The channel of that name; a new one has the ratio 1. */
-static dea_status take_channel(struct maker *m, const struct dea_label *label, size_t *out)
+static dea_status add_channel(struct maker *m, const struct dea_label *label, size_t *out)
 {
   struct dea_layout *l = m->out;
   *out = dea_layout_find_channel(l, label->text);
@@ -238,7 +238,7 @@ static dea_status add_electrodes(struct maker *m)
     to->lead_rad = to->lead ? from->lead_rad.si : 0;
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
     DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
-    DEA_TRY(m->ctx, take_channel(m, &from->channel, &to->channel));
+    DEA_TRY(m->ctx, add_channel(m, &from->channel, &to->channel));
   }
   for (size_t c = m->parts->channel_count > 0 ? 1 : l->channel_count; c < l->channel_count; c++) {
     size_t i = 0;
@@ -256,8 +256,8 @@ static dea_status add_electrodes(struct maker *m)
 
 // Supports, bodies, springs, pressures -----------------------------------------------------------
 
-static dea_status take_hold(const struct maker *m, const struct dea_parts_support *from,
-                            struct dea_layout_support *to)
+static dea_status add_hold(const struct maker *m, const struct dea_parts_support *from,
+                           struct dea_layout_support *to)
 {
   bool pulled = false;
   for (size_t k = 0; k < from->hold_count; k++) {
@@ -307,13 +307,13 @@ static dea_status add_supports(struct maker *m)
     if (from->within.origin != DEA_ABSENT) {
       DEA_TRY(m->ctx, find_shape(m, &from->within, &to->within));
     }
-    DEA_TRY(m->ctx, take_hold(m, from, to));
+    DEA_TRY(m->ctx, add_hold(m, from, to));
   }
   return DEA_OK;
 }
 
-static dea_status take_motion(const struct maker *m, const struct dea_parts_body *from,
-                              struct dea_layout_body *to)
+static dea_status add_motion(const struct maker *m, const struct dea_parts_body *from,
+                             struct dea_layout_body *to)
 {
   to->free = from->free_given ? 0 : 63;
   for (size_t k = 0; k < from->free_count; k++) {
@@ -346,14 +346,14 @@ static dea_status add_bodies(struct maker *m)
     to->mass_kg = from->mass_kg.si;
     to->location = from->name.location;
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
-    DEA_TRY(m->ctx, take_motion(m, from, to));
+    DEA_TRY(m->ctx, add_motion(m, from, to));
   }
   return DEA_OK;
 }
 
 /* A spring's numbers, by whether its direction is a turn. */
-static dea_status take_spring(const struct maker *m, const struct dea_parts_spring *from,
-                              struct dea_layout_spring *to)
+static dea_status add_spring(const struct maker *m, const struct dea_parts_spring *from,
+                             struct dea_layout_spring *to)
 {
   bool turns = from->direction.value >= 3;
   const struct dea_quantity *right =
@@ -396,14 +396,14 @@ static dea_status add_springs(struct maker *m)
     to->component = from->direction.value;
     to->location = from->body.location;
     DEA_TRY(m->ctx, find_body(m, &from->body, &to->body));
-    DEA_TRY(m->ctx, take_spring(m, from, to));
+    DEA_TRY(m->ctx, add_spring(m, from, to));
   }
   return DEA_OK;
 }
 
 /* What a pressure encloses. */
-static dea_status take_enclosure(const struct maker *m, const struct dea_parts_pressure *from,
-                                 struct dea_layout_pressure *to)
+static dea_status add_enclosure(const struct maker *m, const struct dea_parts_pressure *from,
+                                struct dea_layout_pressure *to)
 {
   const bool gas = from->gas_m3.origin != DEA_ABSENT, liquid = from->liquid_m3.origin != DEA_ABSENT;
   const bool given =
@@ -441,7 +441,7 @@ static dea_status add_pressures(struct maker *m)
     to->top = from->side.value == DEA_SIDE_TOP;
     to->name = keep(m, from->name.text);
     to->pressure_Pa = from->pressure_Pa.si;
-    DEA_TRY(m->ctx, take_enclosure(m, from, to));
+    DEA_TRY(m->ctx, add_enclosure(m, from, to));
     to->location = from->shape.location;
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
     DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
@@ -470,8 +470,8 @@ static bool lies_there(const struct dea_layout *l, size_t ply, const struct dea_
   return true;
 }
 
-static dea_status take_ply(const struct maker *m, const struct dea_parts_monitor *from,
-                           struct dea_layout_monitor *to)
+static dea_status add_ply(const struct maker *m, const struct dea_parts_monitor *from,
+                          struct dea_layout_monitor *to)
 {
   if (from->ply.origin != DEA_ABSENT) {
     return find_ply(m, &from->ply, &to->ply);
@@ -489,8 +489,8 @@ static dea_status take_ply(const struct maker *m, const struct dea_parts_monitor
   return DEA_OK;
 }
 
-static dea_status take_monitor(const struct maker *m, const struct dea_parts_monitor *from,
-                               struct dea_layout_monitor *to)
+static dea_status add_monitor(const struct maker *m, const struct dea_parts_monitor *from,
+                              struct dea_layout_monitor *to)
 {
   to->name = keep(m, from->name.text);
   to->location = from->name.location;
@@ -506,7 +506,7 @@ static dea_status take_monitor(const struct maker *m, const struct dea_parts_mon
   if (from->shape.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_REGION;
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
-    return to->region != DEA_LAYOUT_NONE ? take_ply(m, from, to) : DEA_OK;
+    return to->region != DEA_LAYOUT_NONE ? add_ply(m, from, to) : DEA_OK;
   }
   bool point = from->at_count > 0;
   to->kind = point ? DEA_MONITOR_POINT : DEA_MONITOR_LINE;
@@ -514,7 +514,7 @@ static dea_status take_monitor(const struct maker *m, const struct dea_parts_mon
     to->at_m[0][k] = point ? from->at_m[k].si : from->from_m[k].si;
     to->at_m[1][k] = point ? 0 : from->to_m[k].si;
   }
-  return take_ply(m, from, to);
+  return add_ply(m, from, to);
 }
 
 static dea_status add_monitors(struct maker *m)
@@ -522,7 +522,7 @@ static dea_status add_monitors(struct maker *m)
   struct dea_layout *l = m->out;
   MAKE(monitors, monitor_count);
   for (size_t i = 0; i < l->monitor_count; i++) {
-    DEA_TRY(m->ctx, take_monitor(m, &m->parts->monitors[i], &l->monitors[i]));
+    DEA_TRY(m->ctx, add_monitor(m, &m->parts->monitors[i], &l->monitors[i]));
   }
   return DEA_OK;
 }
@@ -549,7 +549,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   m.out->gravity_m_per_s2[2] = device->gravity == DEA_GRAVITY_FIBRES_UP     ? -g
                                : device->gravity == DEA_GRAVITY_FIBRES_DOWN ? g
                                                                             : 0;
-  DEA_TRY(ctx, dea_shape_regions_make(ctx, design, m.out));
+  DEA_TRY(ctx, dea_shape_regions_build(ctx, design, m.out));
   for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
     DEA_TRY(ctx, parts[i](&m));
     DEA_TRY(ctx, dea_arena_status(&m.out->memory));

@@ -31,7 +31,7 @@ struct maker {
   size_t drawing_count;
 };
 
-static dea_status make(struct maker *m, size_t number);
+static dea_status build(struct maker *m, size_t number);
 
 /* Number of the shape `which` of those that a shape is made of, which is made now if it was not;
  * *of = DEA_LAYOUT_NONE when there is none, or it is wrong. */
@@ -52,7 +52,7 @@ static dea_status need(struct maker *m, const struct dea_parts_shape *shape, siz
                            "the shape '%.60s' is made of itself: its '%.60s' needs it again",
                            shape->of[which], shape->name.text);
   }
-  DEA_TRY(m->ctx, make(m, found));
+  DEA_TRY(m->ctx, build(m, found));
   *of = m->state[found] == MADE ? found : DEA_LAYOUT_NONE;
   return DEA_OK;
 }
@@ -235,7 +235,7 @@ static dea_status draw(struct maker *m, const struct dea_parts_shape *shape, str
   return dea_drawing_region(drawing, shape->layer.text, shape->layer.location, out);
 }
 
-static dea_status make_primitive(const struct dea_parts_shape *shape, struct dea_region *out)
+static dea_status build_primitive(const struct dea_parts_shape *shape, struct dea_region *out)
 {
   double value[DEA_SHAPE_PARAMETERS_MAX];
   for (size_t i = 0; i < shape->type->count; i++) {
@@ -245,12 +245,12 @@ static dea_status make_primitive(const struct dea_parts_shape *shape, struct dea
                               shape->name.location);
 }
 
-static dea_status make_region(struct maker *m, const struct dea_parts_shape *shape,
-                              struct dea_region *out)
+static dea_status build_region(struct maker *m, const struct dea_parts_shape *shape,
+                               struct dea_region *out)
 {
   switch (shape->make) {
   case DEA_MAKE_PRIMITIVE:
-    return make_primitive(shape, out);
+    return build_primitive(shape, out);
   case DEA_MAKE_UNION:
   case DEA_MAKE_DIFFERENCE:
   case DEA_MAKE_INTERSECTION:
@@ -266,7 +266,7 @@ static dea_status make_region(struct maker *m, const struct dea_parts_shape *sha
   return DEA_OK;
 }
 
-static dea_status make(struct maker *m, size_t number)
+static dea_status build(struct maker *m, size_t number)
 {
   const struct dea_parts_shape *shape = &m->parts->shapes[number];
   struct dea_region *out = &m->layout->regions[number].region;
@@ -274,7 +274,7 @@ static dea_status make(struct maker *m, size_t number)
     return DEA_OK;
   }
   m->state[number] = BEING_MADE;
-  dea_status status = make_region(m, shape, out);
+  dea_status status = build_region(m, shape, out);
   bool good = status == DEA_OK && m->state[number] != WRONG;
   m->state[number] = good ? MADE : WRONG;
   if (good && !(dea_region_area_m2(out) > 0)) {
@@ -288,7 +288,7 @@ static dea_status make(struct maker *m, size_t number)
   return status == DEA_E_DESIGN ? DEA_OK : status;
 }
 
-static dea_status make_all(struct maker *m)
+static dea_status build_all(struct maker *m)
 {
   size_t count = m->parts->shape_count;
   m->state = dea_arena_alloc(&m->arena, count, sizeof *m->state);
@@ -305,20 +305,20 @@ static dea_status make_all(struct maker *m)
     DEA_TRY_MEMORY(text != NULL);
   }
   for (size_t i = 0; i < count; i++) {
-    DEA_TRY(m->ctx, make(m, i));
+    DEA_TRY(m->ctx, build(m, i));
   }
   return DEA_OK;
 }
 
-dea_status dea_shape_regions_make(struct dea_context *ctx, const struct dea_design *design,
-                                  struct dea_layout *layout)
+dea_status dea_shape_regions_build(struct dea_context *ctx, const struct dea_design *design,
+                                   struct dea_layout *layout)
 {
   struct maker m = {.ctx = ctx,
                     .design = design,
                     .parts = design->parts,
                     .layout = layout,
                     .arena = {.ctx = ctx}};
-  dea_status status = make_all(&m);
+  dea_status status = build_all(&m);
   for (size_t i = 0; i < m.drawing_count; i++) {
     dea_drawing_destroy(m.drawings[i].drawing);
   }

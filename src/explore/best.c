@@ -68,7 +68,7 @@ static double margin(const void *user, size_t side, const double *q)
 }
 
 /* Shifts of scattered designs, the first of them none. */
-static dea_status make_scatter(struct work *w)
+static dea_status build_scatter(struct work *w)
 {
   const struct dea_case_key *case_key = w->case_key;
   const size_t n = case_key->variable_count;
@@ -338,7 +338,7 @@ static dea_status write_front(const struct work *w)
 
 // Figures -----------------------------------------------------------------------------------------
 
-/* Whether limits hold, of what dea_search_look says. */
+/* Whether limits hold, of what dea_search_compute says. */
 static bool is_within(const struct dea_search *search, const double *looked)
 {
   for (size_t l = 0; l < search->limit_count; l++) {
@@ -374,7 +374,7 @@ static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, i
   }
   for (size_t i = 0; i < count; i++) {
     double looked[DEA_SEARCH_VALUES_MAX];
-    const bool is_there = dea_search_look(&w->search, dea_store_get(w->store, i)->p, looked);
+    const bool is_there = dea_search_compute(&w->search, dea_store_get(w->store, i)->p, looked);
     const bool good = is_there && is_within(&w->search, looked);
     struct dea_series *to = good ? within : beyond;
     const double f = is_there ? looked[of_y] : NAN; // a scattered one of another stands for none
@@ -509,8 +509,9 @@ static dea_status remove_written(const struct work *w, size_t number)
 {
   char name[BEST_SIZE];
   name_best(number, name);
-  return begins_so(w, name, written_by) ? dea_path_make_way(w->ctx, w->options->folder, name, true)
-                                        : DEA_OK;
+  return begins_so(w, name, written_by)
+             ? dea_path_create_folders(w->ctx, w->options->folder, name, true)
+             : DEA_OK;
 }
 
 /* The same of a front's table and figure. */
@@ -519,8 +520,8 @@ static dea_status remove_front(const struct work *w)
   if (!begins_so(w, front_table, "design,")) {
     return DEA_OK;
   }
-  DEA_TRY(w->ctx, dea_path_make_way(w->ctx, w->options->folder, front_table, true));
-  return dea_gnuplot_make_way(w->ctx, w->options->folder, front_figure, true);
+  DEA_TRY(w->ctx, dea_path_create_folders(w->ctx, w->options->folder, front_table, true));
+  return dea_gnuplot_create_folders(w->ctx, w->options->folder, front_figure, true);
 }
 
 /* Takes away designs of an earlier search in the folder that had more of them, or of the other
@@ -536,7 +537,7 @@ static dea_status remove_older(const struct work *w, bool ended)
 }
 
 /* What a reader has to know of the numbers of the best at the last voltage. */
-static void take_flags(struct work *w)
+static void add_flags(struct work *w)
 {
   for (size_t i = 0; i < w->report->count; i++) {
     struct dea_optimum *best = &w->report->optima[i];
@@ -547,7 +548,7 @@ static void take_flags(struct work *w)
 static dea_status write_all(struct work *w, bool ended)
 {
   const bool front = w->case_key->file->objective_count > 1;
-  take_flags(w);
+  add_flags(w);
   for (size_t i = 0; i < dea_store_count(w->store); i++) {
     w->report->failed += dea_store_get(w->store, i)->why[0] != '\0' ? 1U : 0U;
   }
@@ -564,7 +565,7 @@ static dea_status run(struct work *w)
 {
   const struct dea_shard whole = {1, 1};
   DEA_TRY(w->ctx, check(w));
-  DEA_TRY(w->ctx, make_scatter(w));
+  DEA_TRY(w->ctx, build_scatter(w));
   w->evaluator = dea_case_key_with_slopes(w->case_key);
   w->report->gradients = w->evaluator.gradients;
   DEA_TRY(w->ctx, w->options->force ? dea_store_remove(w->ctx, w->options->folder) : DEA_OK);

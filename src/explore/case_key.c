@@ -29,8 +29,8 @@ static void resolve(const struct dea_case_key *case_key, const struct dea_design
   }
 }
 
-static dea_status take_id(void *user, const struct dea_design *design,
-                          const struct dea_device *device)
+static dea_status add_identity(void *user, const struct dea_design *design,
+                               const struct dea_device *device)
 {
   struct dea_case_key *case_key = user;
   struct dea_text text = {.ctx = case_key->model.ctx};
@@ -49,7 +49,7 @@ static dea_status take_id(void *user, const struct dea_design *design,
 }
 
 /* Hash of the design as it is, of the variables and of what is kept of a case. */
-static dea_status take_hash(struct dea_case_key *case_key)
+static dea_status compute_hash(struct dea_case_key *case_key)
 {
   struct dea_text text = {.ctx = case_key->ctx};
   resolve(case_key, case_key->design, case_key->device, &text);
@@ -74,7 +74,8 @@ static dea_status take_hash(struct dea_case_key *case_key)
 // Evaluation --------------------------------------------------------------------------------------
 
 /* What is wrong with a design that cannot be built. */
-static void tell_design(struct dea_case_key *case_key, struct dea_context *ctx, struct dea_case *io)
+static void describe_design(struct dea_case_key *case_key, struct dea_context *ctx,
+                            struct dea_case *io)
 {
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
@@ -112,7 +113,7 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
   }
   if (status == DEA_E_DOMAIN) {
     io->id[0] = '\0'; // not that of the design to begin from
-    tell_design(case_key, ctx, io);
+    describe_design(case_key, ctx, io);
     return DEA_OK;
   }
   DEA_TRY(ctx, status);
@@ -152,12 +153,12 @@ static dea_status find_critical(struct dea_case_key *case_key,
                highest_V = fmax(last_V, dea_design_highest_V(design));
   for (size_t i = 0; i < case_key->quantity_count; i++) {
     const struct dea_explored *quantity = &case_key->quantities[i];
-    const struct dea_critical_ask ask = {.type = case_key->model.type,
-                                         .device = device,
-                                         .settings = settings,
-                                         .kind = quantity->event,
-                                         .first_V = highest_V / 4,
-                                         .highest_V = 4 * highest_V};
+    const struct dea_critical_request ask = {.type = case_key->model.type,
+                                             .device = device,
+                                             .settings = settings,
+                                             .kind = quantity->event,
+                                             .first_V = highest_V / 4,
+                                             .highest_V = 4 * highest_V};
     if (!quantity->is_critical) {
       continue;
     }
@@ -233,7 +234,7 @@ static dea_status prepare_model(struct dea_case_key *case_key)
   model->length = case_key->length;
   model->params = case_key->params;
   model->param_count = case_key->variable_count;
-  model->built = take_id;
+  model->built = add_identity;
   model->stood = stand;
   model->user = case_key;
   case_key->memory.ctx = case_key->ctx;
@@ -275,7 +276,7 @@ static dea_status read_design(struct dea_case_key *case_key)
   return dea_device_build(ctx, case_key->design, &case_key->device);
 }
 
-static dea_status take_quantities(struct dea_case_key *case_key)
+static dea_status read_quantities(struct dea_case_key *case_key)
 {
   const struct dea_explore_file *file = case_key->file;
   for (size_t i = 0; i < file->quantity_count; i++) {
@@ -299,7 +300,7 @@ static dea_status take_quantities(struct dea_case_key *case_key)
   return DEA_OK;
 }
 
-static void take_voltages(struct dea_case_key *case_key)
+static void read_voltages(struct dea_case_key *case_key)
 {
   const struct dea_explore_file *file = case_key->file;
   case_key->voltage_count = file->voltage_count > 0 ? file->voltage_count : 1;
@@ -335,7 +336,7 @@ static dea_status check_variable(struct dea_case_key *case_key, const struct dea
 }
 
 /* What a search misses a variable by, and the one value of one that only scatters. */
-static dea_status take_scatter(struct dea_case_key *case_key, struct dea_variable *variable)
+static dea_status read_scatter(struct dea_case_key *case_key, struct dea_variable *variable)
 {
   struct dea_context *ctx = case_key->ctx;
   const struct dea_explore_variable *text = variable->text;
@@ -366,7 +367,7 @@ static dea_status take_scatter(struct dea_case_key *case_key, struct dea_variabl
 
 /* Other numbers of the design that take the value of a variable: of the same unit, and of the same
  * film, stretched or not. */
-static dea_status take_ties(struct dea_case_key *case_key, struct dea_variable *variable)
+static dea_status read_ties(struct dea_case_key *case_key, struct dea_variable *variable)
 {
   struct dea_context *ctx = case_key->ctx;
   const struct dea_explore_variable *text = variable->text;
@@ -398,7 +399,7 @@ static dea_status take_ties(struct dea_case_key *case_key, struct dea_variable *
   return DEA_OK;
 }
 
-static dea_status take_variable(struct dea_case_key *case_key,
+static dea_status read_variable(struct dea_case_key *case_key,
                                 const struct dea_explore_variable *text,
                                 struct dea_variable *variable)
 {
@@ -416,11 +417,11 @@ static dea_status take_variable(struct dea_case_key *case_key,
     }
   }
   const struct dea_device_param_source source = {case_key->design, case_key->device, .whole = true};
-  DEA_TRY(ctx, dea_device_param_make(ctx, &param, &source, &variable->param));
+  DEA_TRY(ctx, dea_device_param_build(ctx, &param, &source, &variable->param));
   if (dea_finding_count(ctx, DEA_ERROR) > errors) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, take_ties(case_key, variable));
+  DEA_TRY(ctx, read_ties(case_key, variable));
   variable->low = text->text.low.text[0] != '\0' ? variable->param.param.low : NAN;
   variable->high = text->text.high.text[0] != '\0' ? variable->param.param.high : NAN;
   for (size_t i = 0; i < text->value_count; i++) {
@@ -428,7 +429,7 @@ static dea_status take_variable(struct dea_case_key *case_key,
             dea_device_param_number(ctx, &variable->param, &text->values[i], &variable->values[i]));
   }
   variable->value_count = text->value_count;
-  DEA_TRY(ctx, take_scatter(case_key, variable));
+  DEA_TRY(ctx, read_scatter(case_key, variable));
   const size_t steps = text->steps.origin != DEA_ABSENT ? (size_t)text->steps.si : 0;
   const double span = variable->high - variable->low;
   if (steps > DEA_EXPLORE_VALUES_MAX || (variable->param.whole && span >= DEA_EXPLORE_VALUES_MAX)) {
@@ -445,11 +446,11 @@ static dea_status take_variable(struct dea_case_key *case_key,
   return DEA_OK;
 }
 
-static dea_status take_variables(struct dea_case_key *case_key)
+static dea_status read_variables(struct dea_case_key *case_key)
 {
   const struct dea_explore_file *file = case_key->file;
   for (size_t j = 0; j < file->variable_count; j++) {
-    DEA_TRY(case_key->ctx, take_variable(case_key, &file->variables[j], &case_key->variables[j]));
+    DEA_TRY(case_key->ctx, read_variable(case_key, &file->variables[j], &case_key->variables[j]));
     case_key->params[j] = case_key->variables[j].param;
     case_key->params[j].ties = case_key->variables[j].ties;
   }
@@ -457,7 +458,7 @@ static dea_status take_variables(struct dea_case_key *case_key)
   return DEA_OK;
 }
 
-static dea_status take_limit(struct dea_case_key *case_key, const struct dea_explore_limit *text)
+static dea_status read_limit(struct dea_case_key *case_key, const struct dea_explore_limit *text)
 {
   struct dea_limit *limit = &case_key->limits[case_key->limit_count++];
   struct dea_context *ctx = case_key->ctx;
@@ -486,7 +487,7 @@ static dea_status take_limit(struct dea_case_key *case_key, const struct dea_exp
                                "a limit needs above or below");
 }
 
-static dea_status take_objectives(struct dea_case_key *case_key)
+static dea_status read_objectives(struct dea_case_key *case_key)
 {
   const struct dea_explore_file *file = case_key->file;
   for (size_t k = 0; k < file->objective_count; k++) {
@@ -508,21 +509,21 @@ static dea_status resolve_file(struct dea_case_key *case_key)
   const struct dea_label *model = &case_key->file->model;
   DEA_TRY(ctx, dea_model_seek(ctx, model->text, model->location, &case_key->model.type));
   DEA_TRY(ctx, read_design(case_key));
-  DEA_TRY(ctx, take_quantities(case_key));
-  DEA_TRY(ctx, dea_from_fit_take(ctx, case_key->design, case_key->device, case_key->file));
-  DEA_TRY(ctx, take_variables(case_key));
+  DEA_TRY(ctx, read_quantities(case_key));
+  DEA_TRY(ctx, dea_from_fit_read(ctx, case_key->design, case_key->device, case_key->file));
+  DEA_TRY(ctx, read_variables(case_key));
   for (size_t i = 0; i < case_key->file->limit_count; i++) {
-    DEA_TRY(ctx, take_limit(case_key, &case_key->file->limits[i]));
+    DEA_TRY(ctx, read_limit(case_key, &case_key->file->limits[i]));
   }
-  DEA_TRY(ctx, take_objectives(case_key));
-  take_voltages(case_key);
+  DEA_TRY(ctx, read_objectives(case_key));
+  read_voltages(case_key);
   const size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {
     return dea_fail(ctx, DEA_E_DESIGN, "the file '%s' has %zu error%s", case_key->file->head.file,
                     found, found > 1 ? "s" : "");
   }
   DEA_TRY(ctx, dea_model_check(ctx, case_key->model.type, case_key->design, case_key->device));
-  DEA_TRY(ctx, take_hash(case_key));
+  DEA_TRY(ctx, compute_hash(case_key));
   return prepare_model(case_key);
 }
 

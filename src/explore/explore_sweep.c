@@ -135,7 +135,7 @@ static dea_status evaluate_all(struct work *w)
 static dea_status evaluate(struct work *w)
 {
   struct dea_context *ctx = w->case_key->ctx;
-  DEA_TRY(ctx, dea_order_make(w->case_key, w->plan, &w->order));
+  DEA_TRY(ctx, dea_order_build(w->case_key, w->plan, &w->order));
   w->block = w->plan->count / (SHARES * w->options->shard.parts);
   w->block = w->block < 1 ? 1 : w->block > w->order.group ? w->order.group : w->block;
   w->stretches = dea_alloc(ctx, w->options->processes, sizeof *w->stretches);
@@ -214,7 +214,7 @@ dea_status dea_sweep_run(const struct dea_case_key *case_key,
 {
   struct dea_plan plan;
   *report = (struct dea_sweep_report){0};
-  DEA_TRY(case_key->ctx, dea_plan_make(case_key, &plan));
+  DEA_TRY(case_key->ctx, dea_plan_build(case_key, &plan));
   struct work w = {.case_key = case_key, .options = options, .report = report, .plan = &plan};
   dea_status status = run(&w);
   dea_store_close(w.store);

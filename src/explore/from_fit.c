@@ -134,7 +134,7 @@ static void find_name(struct work *w, const json_t *row, const char *prefix, cha
   }
 }
 
-static dea_status take_row(struct work *w, size_t i, const json_t *row, const char *prefix)
+static dea_status read_row(struct work *w, size_t i, const json_t *row, const char *prefix)
 {
   char name[128], state[24];
   bool good;
@@ -195,7 +195,7 @@ static dea_status find_prefix(const struct work *w, const char **prefix)
 }
 
 /* Correlations of the variables: those of the fit among its own, none of others. */
-static dea_status take_correlations(struct work *w)
+static dea_status read_correlations(struct work *w)
 {
   const json_t *rows = json_object_get(w->root, "correlations");
   struct dea_explore_file *file = w->file;
@@ -218,7 +218,7 @@ static dea_status take_correlations(struct work *w)
   return dea_explore_correlations_check(w->ctx, file);
 }
 
-static dea_status take_all(struct work *w)
+static dea_status read_all(struct work *w)
 {
   const json_t *rows = json_object_get(w->root, "parameters");
   const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
@@ -226,10 +226,10 @@ static dea_status take_all(struct work *w)
   DEA_TRY(w->ctx, find_prefix(w, &prefix));
   for (size_t i = 0; i < json_array_size(rows); i++) {
     if (dea_finding_count(w->ctx, DEA_ERROR) == errors || prefix[0] == '\0') {
-      DEA_TRY(w->ctx, take_row(w, i, json_array_get(rows, i), prefix));
+      DEA_TRY(w->ctx, read_row(w, i, json_array_get(rows, i), prefix));
     }
   }
-  return dea_finding_count(w->ctx, DEA_ERROR) == errors ? take_correlations(w) : DEA_OK;
+  return dea_finding_count(w->ctx, DEA_ERROR) == errors ? read_correlations(w) : DEA_OK;
 }
 
 static dea_status read_fit(struct work *w, json_t **out)
@@ -263,7 +263,7 @@ static dea_status read_fit(struct work *w, json_t **out)
                          w->at->text);
 }
 
-dea_status dea_from_fit_take(struct dea_context *ctx, const struct dea_design *design,
+dea_status dea_from_fit_read(struct dea_context *ctx, const struct dea_design *design,
                              const struct dea_device *device, struct dea_explore_file *io)
 {
   struct work w = {.ctx = ctx, .source = {design, device, .whole = true}, .file = io};
@@ -274,7 +274,7 @@ dea_status dea_from_fit_take(struct dea_context *ctx, const struct dea_design *d
   }
   DEA_TRY(ctx, read_fit(&w, &root));
   w.root = root;
-  const dea_status status = root != NULL ? take_all(&w) : DEA_OK;
+  const dea_status status = root != NULL ? read_all(&w) : DEA_OK;
   json_decref(root);
   return status;
 }

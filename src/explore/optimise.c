@@ -98,7 +98,7 @@ static double statistic_slope(const struct dea_search *search, const struct spre
                       : mean;
 }
 
-bool dea_search_look(const struct dea_search *search, const double *p, double *out)
+bool dea_search_compute(const struct dea_search *search, const double *p, double *out)
 {
   const size_t count = scattered(search), values = search->objective_count + search->limit_count;
   struct spread all = {.count = count};
@@ -370,7 +370,7 @@ static void functions_at(struct work *w, const double *x, double *values, double
   if (!evaluate(w, w->around, samples) || (gradients != NULL && !evaluate_around(w, x))) {
     return;
   }
-  dea_search_look(search, p, looked);
+  dea_search_compute(search, p, looked);
   for (size_t k = 0; k < count; k++) {
     double shift, scale;
     const size_t r = source_of(w, k, &shift, &scale);
@@ -517,8 +517,8 @@ static dea_status find_scale(struct work *w)
   for (size_t s = 0; s < scattered(search); s++) {
     scatter(search, search->start, s, w->around + s * search->evaluator->param_count);
   }
-  const bool done =
-      evaluate(w, w->around, scattered(search)) && dea_search_look(search, search->start, looked);
+  const bool done = evaluate(w, w->around, scattered(search)) &&
+                    dea_search_compute(search, search->start, looked);
   for (size_t k = 0; k < DEA_EXPLORE_OBJECTIVES_MAX; k++) {
     const double f = done && k < search->objective_count ? fabs(looked[k]) : NAN;
     w->scale[k] = f > 0 ? f : 1;

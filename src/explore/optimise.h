@@ -53,7 +53,7 @@ dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *o
  * of the design p by what the store has; NAN where a value is missing. false: it was not looked at.
  */
 enum { DEA_SEARCH_VALUES_MAX = DEA_EXPLORE_OBJECTIVES_MAX + 2 * DEA_EXPLORE_LIMITS_MAX };
-bool dea_search_look(const struct dea_search *search, const double *p, double *out);
+bool dea_search_compute(const struct dea_search *search, const double *p, double *out);
 /* Mark k of the design p by what the store has, or of all that it stands for together. */
 unsigned dea_search_marks(const struct dea_search *search, const double *p, size_t k);
 /* Whether it was built with NLopt. */

@@ -126,8 +126,8 @@ dea_status dea_order_of(struct dea_context *ctx, const double *p, size_t count, 
   return DEA_OK;
 }
 
-dea_status dea_order_make(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                          struct dea_order *out)
+dea_status dea_order_build(const struct dea_case_key *case_key, const struct dea_plan *plan,
+                           struct dea_order *out)
 {
   bool whole[DEA_CASE_PARAMS_MAX];
   for (size_t j = 0; j < case_key->variable_count; j++) {

@@ -13,8 +13,8 @@ struct dea_order {
 
 /* Groups of the plan alone: the same whatever is done, and however many processes do it. Arrays:
  * owned by the caller. */
-dea_status dea_order_make(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                          struct dea_order *out);
+dea_status dea_order_build(const struct dea_case_key *case_key, const struct dea_plan *plan,
+                           struct dea_order *out);
 /* The same of points p [count][params] in groups of at most `group`; whole[j]: numbers of
  * parameter j are whole ones, which neighbours have in common. */
 dea_status dea_order_of(struct dea_context *ctx, const double *p, size_t count, size_t params,

@@ -249,7 +249,7 @@ dea_status dea_plan_check(const struct dea_case_key *case_key)
   return dea_finding_count(ctx, DEA_ERROR) == errors ? DEA_OK : cannot_be_made(ctx);
 }
 
-static dea_status make_grid(const struct dea_case_key *case_key, struct dea_plan *out)
+static dea_status build_grid(const struct dea_case_key *case_key, struct dea_plan *out)
 {
   const size_t n = case_key->variable_count;
   double count = 1;
@@ -273,7 +273,7 @@ static dea_status make_grid(const struct dea_case_key *case_key, struct dea_plan
   return DEA_OK;
 }
 
-static dea_status make_sparse(const struct dea_case_key *case_key, struct dea_plan *out)
+static dea_status build_sparse(const struct dea_case_key *case_key, struct dea_plan *out)
 {
   const size_t n = case_key->variable_count;
   const int level = (int)case_key->file->level.si;
@@ -304,7 +304,7 @@ static dea_status draw(const struct dea_case_key *case_key, size_t dimensions, s
   }
 }
 
-static dea_status make_samples(const struct dea_case_key *case_key, struct dea_plan *out)
+static dea_status build_samples(const struct dea_case_key *case_key, struct dea_plan *out)
 {
   const size_t n = case_key->variable_count, samples = (size_t)case_key->file->samples.si;
   const bool indices = case_key->file->plan.value == DEA_PLAN_INDICES;
@@ -340,14 +340,14 @@ static dea_status make_samples(const struct dea_case_key *case_key, struct dea_p
   return status;
 }
 
-dea_status dea_plan_make(const struct dea_case_key *case_key, struct dea_plan *out)
+dea_status dea_plan_build(const struct dea_case_key *case_key, struct dea_plan *out)
 {
   *out = (struct dea_plan){0};
   DEA_TRY(case_key->ctx, dea_plan_check(case_key));
   const int kind = case_key->file->plan.value;
-  dea_status status = kind == DEA_PLAN_GRID     ? make_grid(case_key, out)
-                      : kind == DEA_PLAN_SPARSE ? make_sparse(case_key, out)
-                                                : make_samples(case_key, out);
+  dea_status status = kind == DEA_PLAN_GRID     ? build_grid(case_key, out)
+                      : kind == DEA_PLAN_SPARSE ? build_sparse(case_key, out)
+                                                : build_samples(case_key, out);
   if (status != DEA_OK) {
     dea_plan_free(case_key->ctx, out);
   }

@@ -32,5 +32,5 @@ struct dea_plan {
  * Errors are findings; DEA_E_DESIGN then. */
 dea_status dea_plan_check(const struct dea_case_key *case_key);
 /* Errors (too many cases, what has no range) are findings; DEA_E_DESIGN then. */
-dea_status dea_plan_make(const struct dea_case_key *case_key, struct dea_plan *out);
+dea_status dea_plan_build(const struct dea_case_key *case_key, struct dea_plan *out);
 void dea_plan_free(struct dea_context *ctx, struct dea_plan *plan);

@@ -37,7 +37,7 @@ struct dea_pool {
   struct worker *workers; // [count]
 };
 
-static bool take_all(int socket, void *bytes, size_t length)
+static bool receive_all(int socket, void *bytes, size_t length)
 {
   for (char *to = bytes; length > 0;) {
     const ssize_t n = recv(socket, to, length, 0);
@@ -70,7 +70,7 @@ static void work(struct dea_context *ctx, const struct dea_evaluator *evaluator,
 {
   struct reply reply;
   memset(&reply, 0, sizeof reply); // all bytes of it are sent
-  while (take_all(socket, &reply.done, sizeof reply.done)) {
+  while (receive_all(socket, &reply.done, sizeof reply.done)) {
     evaluate(ctx, evaluator, &reply);
     if (!dea_send_all(socket, &reply, sizeof reply)) {
       return;
@@ -153,7 +153,7 @@ void dea_pool_destroy(struct dea_pool *pool)
 }
 
 /* Sends a case to a process that has none, and starts one where there is none. */
-static dea_status give(struct dea_pool *pool, struct worker *worker)
+static dea_status assign_case(struct dea_pool *pool, struct worker *worker)
 {
   DEA_TRY(pool->ctx, worker->process == 0 ? start(pool, worker) : DEA_OK);
   worker->busy = true;
@@ -162,7 +162,7 @@ static dea_status give(struct dea_pool *pool, struct worker *worker)
 }
 
 /* What a process that died leaves of its case. */
-static void bury(struct dea_pool *pool, struct worker *worker, struct reply *reply)
+static void reap(struct dea_pool *pool, struct worker *worker, struct reply *reply)
 {
   *reply = (struct reply){.done = worker->now};
   for (size_t i = 0; i < dea_evaluator_values(pool->evaluator); i++) {
@@ -171,13 +171,14 @@ static void bury(struct dea_pool *pool, struct worker *worker, struct reply *rep
   end(worker, reply->done.why);
 }
 
-static dea_status hear(struct dea_pool *pool, struct worker *worker, dea_case_sink sink, void *user)
+static dea_status receive(struct dea_pool *pool, struct worker *worker, dea_case_sink sink,
+                          void *user)
 {
   struct reply reply;
-  if (take_all(worker->socket, &reply, sizeof reply)) {
+  if (receive_all(worker->socket, &reply, sizeof reply)) {
     worker->busy = false;
   } else {
-    bury(pool, worker, &reply);
+    reap(pool, worker, &reply);
   }
   if (reply.status != DEA_OK) {
     return dea_fail(pool->ctx, reply.status, "%s", reply.message);
@@ -200,7 +201,7 @@ dea_status dea_pool_run(struct dea_pool *pool, dea_case_source source, dea_case_
         memset(&worker->now, 0, sizeof worker->now);
         worker->now.process = k;
         more = source(user, &worker->now);
-        status = more ? give(pool, worker) : DEA_OK;
+        status = more ? assign_case(pool, worker) : DEA_OK;
       }
       busy += worker->busy ? 1U : 0U;
       polled[k] = (struct pollfd){.fd = worker->busy ? worker->socket : -1, .events = POLLIN};
@@ -211,7 +212,7 @@ dea_status dea_pool_run(struct dea_pool *pool, dea_case_source source, dea_case_
     if (status == DEA_OK && busy > 0 && poll(polled, pool->count, ASK_MS) > 0) {
       for (size_t k = 0; k < pool->count && status == DEA_OK; k++) {
         if (polled[k].revents != 0) {
-          status = hear(pool, &pool->workers[k], sink, user);
+          status = receive(pool, &pool->workers[k], sink, user);
         }
       }
     }

@@ -110,7 +110,8 @@ static dea_status add_change(struct dea_context *ctx, const struct dea_case_key 
 }
 
 /* Keeps the slope of a quantity at the last voltage. */
-static void put(const struct dea_case_key *case_key, size_t quantity, size_t variable, double slope)
+static void set_slope(const struct dea_case_key *case_key, size_t quantity, size_t variable,
+                      double slope)
 {
   const size_t value = (case_key->voltage_count - 1) * case_key->quantity_count + quantity;
   case_key->now->q[case_key->evaluator.value_count + value * case_key->variable_count + variable] =
@@ -123,13 +124,13 @@ static dea_status find(struct dea_context *ctx, const struct dea_case_key *case_
   const struct wanted wanted = find_wanted(case_key, held);
   double slopes[DEA_CASE_PARAMS_MAX * DEA_EXPLORE_QUANTITIES_MAX];
   const size_t count = wanted.column_count + wanted.monitor_count;
-  const struct dea_gradient_ask ask = {.changes = sides->changes,
-                                       .change_count = sides->count,
-                                       .columns = wanted.columns,
-                                       .column_count = wanted.column_count,
-                                       .monitors = wanted.monitors,
-                                       .monitor_count = wanted.monitor_count,
-                                       .motions = wanted.motions};
+  const struct dea_gradient_request ask = {.changes = sides->changes,
+                                           .change_count = sides->count,
+                                           .columns = wanted.columns,
+                                           .column_count = wanted.column_count,
+                                           .monitors = wanted.monitors,
+                                           .monitor_count = wanted.monitor_count,
+                                           .motions = wanted.motions};
   if (count == 0) {
     return DEA_OK;
   }
@@ -143,7 +144,7 @@ static dea_status find(struct dea_context *ctx, const struct dea_case_key *case_
   }
   for (size_t c = 0; c < sides->count; c++) {
     for (size_t i = 0; i < count; i++) {
-      put(case_key, wanted.quantity[i], sides->variable[c], slopes[c * count + i]);
+      set_slope(case_key, wanted.quantity[i], sides->variable[c], slopes[c * count + i]);
     }
   }
   return DEA_OK;
@@ -168,14 +169,14 @@ static dea_status find_critical(struct dea_context *ctx, const struct dea_case_k
       continue;
     }
     for (size_t c = 0; c < sides->count; c++) {
-      put(case_key, i, sides->variable[c], slopes[c]);
+      set_slope(case_key, i, sides->variable[c], slopes[c]);
     }
   }
   return DEA_OK;
 }
 
-static dea_status take(struct dea_case_key *case_key, struct dea_model *model,
-                       const struct dea_device *device, size_t stop)
+static dea_status add_stop(struct dea_case_key *case_key, struct dea_model *model,
+                           const struct dea_device *device, size_t stop)
 {
   struct dea_context *ctx = case_key->model.ctx;
   const size_t last = case_key->voltage_count - 1;
@@ -206,7 +207,7 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
 {
   struct dea_case_key *case_key = user;
   case_key->now = io;
-  case_key->stood = take;
+  case_key->stood = add_stop;
   const dea_status status = case_key->evaluator.evaluate(case_key, ctx, io);
   case_key->stood = NULL;
   case_key->now = NULL;

@@ -70,7 +70,7 @@ dea_status dea_slurm_submit(struct dea_context *ctx, const struct dea_slurm_opti
                             char array[32], char merge[32])
 {
   char head[256], tail[112];
-  DEA_TRY(ctx, dea_folder_make(ctx, options->folder));
+  DEA_TRY(ctx, dea_folder_create(ctx, options->folder));
   snprintf(head, sizeof head,
            "#SBATCH --job-name=dea-sweep\n#SBATCH --array=1-%zu\n#SBATCH --cpus-per-task=%zu\n"
            "#SBATCH --requeue\n#SBATCH --output=/dev/null\n",

@@ -325,7 +325,7 @@ static dea_status mend_part(struct dea_store *store)
 static dea_status open_all(struct dea_store *store, const char *folder,
                            const struct dea_shard *shard)
 {
-  DEA_TRY(store->ctx, dea_folder_make(store->ctx, folder));
+  DEA_TRY(store->ctx, dea_folder_create(store->ctx, folder));
   if (shard != NULL) {
     DEA_TRY(store->ctx, open_part(store, folder, shard)); // before the others are read
   }

@@ -17,7 +17,7 @@ struct shown {
 };
 
 /* Puts quantiles `low` and its opposite at voltage v. */
-static void put(const struct shown *shown, size_t v, size_t low, struct dea_series *out)
+static void add_point(const struct shown *shown, size_t v, size_t low, struct dea_series *out)
 {
   const size_t n = shown->case_key->voltage_count;
   const double *quantile = shown->spreads[v * shown->case_key->quantity_count].quantile;
@@ -36,7 +36,7 @@ static dea_status add_bands(const struct shown *shown, struct dea_panel *panel)
     DEA_TRY(shown->case_key->ctx,
             dea_panel_add(shown->case_key->ctx, panel, n, DEA_BAND, colours[k], titles[k], &band));
     for (size_t v = 0; v < n; v++) {
-      put(shown, v, k, band);
+      add_point(shown, v, k, band);
     }
   }
   return DEA_OK;
@@ -61,7 +61,7 @@ static dea_status add_line(const struct shown *shown, struct dea_panel *panel, b
   for (size_t v = 0; v < n; v++) {
     const bool beside = (v > 0 && is_doubted(shown, v - 1)) || is_doubted(shown, v + 1);
     if (dashed ? is_doubted(shown, v) || beside : !is_doubted(shown, v)) {
-      put(shown, v, DEA_SHARES / 2, line);
+      add_point(shown, v, DEA_SHARES / 2, line);
     }
   }
   return DEA_OK;

@@ -165,7 +165,7 @@ dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct d
   void *before = dea_c_locale_enter();
   dea_status status = gather(&w, plan, store, &whole);
   if (status == DEA_OK && whole) {
-    status = dea_emulator_make(ctx, &w.emulator);
+    status = dea_emulator_build(ctx, &w.emulator);
     status = status == DEA_OK ? emulate(&w, options, at) : status;
     dea_emulator_free(ctx, &w.emulator);
   }

@@ -77,8 +77,8 @@ static dea_status write_cases(const struct work *w)
 }
 
 /* One column: a variable, or with value >= 0 a value. */
-static void put_column(struct h5 *h, const struct work *w, hid_t group, size_t rows, double *column,
-                       size_t param, int value)
+static void write_column(struct h5 *h, const struct work *w, hid_t group, size_t rows,
+                         double *column, size_t param, int value)
 {
   char name[64];
   size_t row = 0;
@@ -92,19 +92,19 @@ static void put_column(struct h5 *h, const struct work *w, hid_t group, size_t r
     const struct dea_column *of =
         &w->case_key->quantities[(size_t)value % w->case_key->quantity_count].shown;
     dea_case_key_value_name(w->case_key, (size_t)value, name, sizeof name);
-    dea_h5_put_array(h, group, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column, of->si_unit,
-                     of->meaning);
+    dea_h5_write_array(h, group, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column, of->si_unit,
+                       of->meaning);
   } else {
     const struct dea_device_param *of = &w->case_key->params[param];
-    dea_h5_put_array(h, group, of->param.name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column,
-                     of->param.unit, "value in the design");
+    dea_h5_write_array(h, group, of->param.name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column,
+                       of->param.unit, "value in the design");
   }
 }
 
 enum { ID, REASON, FLAGS }; // FLAGS + k: at voltage k
 
 /* A column of words. */
-static void put_texts(struct h5 *h, const struct work *w, hid_t group, size_t rows, size_t what)
+static void write_texts(struct h5 *h, const struct work *w, hid_t group, size_t rows, size_t what)
 {
   static const size_t sizes[] = {DEA_CASE_ID_SIZE, DEA_CASE_WHY_SIZE, DEA_FLAGS_SIZE};
   static const char *const meanings[] = {"hash of the resolved design", "why a value is missing",
@@ -133,7 +133,7 @@ static void put_texts(struct h5 *h, const struct work *w, hid_t group, size_t ro
   }
   hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, size);
-  dea_h5_put_array(h, group, name, type, type, rows, texts, "1", meanings[kind]);
+  dea_h5_write_array(h, group, name, type, type, rows, texts, "1", meanings[kind]);
   dea_h5_close(type);
   dea_free(w->ctx, texts);
 }
@@ -153,22 +153,22 @@ static dea_status write_h5(const struct work *w)
     return DEA_E_MEMORY;
   }
   dea_h5_begin(&h, w->ctx, path);
-  hid_t file = dea_h5_file_make(&h);
-  dea_h5_put_text(&h, file, "question", w->case_key->hash);
-  dea_h5_put_text(&h, file, "model", w->case_key->model.type->name);
-  hid_t group = dea_h5_group_make(&h, file, "cases");
+  hid_t file = dea_h5_file_create(&h);
+  dea_h5_write_text(&h, file, "question", w->case_key->hash);
+  dea_h5_write_text(&h, file, "model", w->case_key->model.type->name);
+  hid_t group = dea_h5_group_create(&h, file, "cases");
   if (rows > 0) {
-    put_texts(&h, w, group, rows, ID);
+    write_texts(&h, w, group, rows, ID);
     for (size_t j = 0; j < w->params; j++) {
-      put_column(&h, w, group, rows, column, j, -1);
+      write_column(&h, w, group, rows, column, j, -1);
     }
     for (size_t i = 0; i < w->values; i++) {
-      put_column(&h, w, group, rows, column, 0, (int)i);
+      write_column(&h, w, group, rows, column, 0, (int)i);
     }
     for (size_t k = 0; k < w->case_key->voltage_count; k++) {
-      put_texts(&h, w, group, rows, FLAGS + k);
+      write_texts(&h, w, group, rows, FLAGS + k);
     }
-    put_texts(&h, w, group, rows, REASON);
+    write_texts(&h, w, group, rows, REASON);
   }
   dea_h5_close(group);
   dea_h5_file_write(&h, file);
@@ -181,7 +181,7 @@ static dea_status write_h5(const struct work *w)
 // What samples say --------------------------------------------------------------------------------
 
 /* Values i of the cases from first on, [count]; NAN where a case is not done. */
-static void take_values(const struct work *w, size_t i, size_t first, size_t count, double *out)
+static void get_values(const struct work *w, size_t i, size_t first, size_t count, double *out)
 {
   for (size_t c = 0; c < count; c++) {
     const struct dea_case *done = case_of(w, first + c);
@@ -218,7 +218,7 @@ static dea_status write_statistics(const struct work *w, const size_t *doubted, 
   }
   dea_text_add(&out, ",doubted\n");
   for (size_t i = 0; i < w->values && status == DEA_OK; i++) {
-    take_values(w, i, 0, independent(w), values);
+    get_values(w, i, 0, independent(w), values);
     status = dea_spread_find(w->ctx, values, independent(w), &spreads[i]);
     dea_case_key_value_name(w->case_key, i, name, sizeof name);
     name[strcspn(name, "@")] = '\0';
@@ -269,7 +269,7 @@ static dea_status write_indices(const struct work *w, double *values)
   char name[64];
   dea_text_add(&out, "quantity,variable,first,total\n");
   for (size_t i = 0; i < w->values; i++) {
-    take_values(w, i, 0, w->plan->count, values);
+    get_values(w, i, 0, w->plan->count, values);
     dea_case_key_value_name(w->case_key, i, name, sizeof name);
     for (size_t j = 0; j < w->params; j++) {
       double first, total;

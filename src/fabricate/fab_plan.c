@@ -128,7 +128,7 @@ static double largest_stretch(const struct dea_layout *layout)
 }
 
 /* The opening of a frame that stays: all that it holds the edge of. */
-static dea_status make_hole(struct dea_context *ctx, struct dea_fab_plan *plan)
+static dea_status build_hole(struct dea_context *ctx, struct dea_fab_plan *plan)
 {
   const struct dea_motion still = dea_motion_translation(0, 0);
   const struct dea_layout *layout = plan->layout;
@@ -212,7 +212,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_fab_plan *plan)
   for (size_t i = 0; i < layout->ply_count; i++) {
     plan->stretched |= dea_ply_is_stretched(&layout->plies[i]);
   }
-  DEA_TRY(ctx, make_hole(ctx, plan));
+  DEA_TRY(ctx, build_hole(ctx, plan));
   plan->round = plan->held && is_circle(&plan->hole);
   dea_layout_box_m(layout, box);
   for (size_t i = 0; i < layout->body_count; i++) {
@@ -607,8 +607,8 @@ static dea_status check_leads(struct dea_context *ctx, const struct dea_fab_plan
   return DEA_OK;
 }
 
-dea_status dea_fab_plan_make(struct dea_context *ctx, const struct dea_design *design,
-                             const struct dea_device *device, struct dea_fab_plan *out)
+dea_status dea_fab_plan_build(struct dea_context *ctx, const struct dea_design *design,
+                              const struct dea_device *device, struct dea_fab_plan *out)
 {
   const size_t before = dea_finding_count(ctx, DEA_ERROR);
   *out = (struct dea_fab_plan){.design = design,

@@ -50,8 +50,8 @@ struct dea_fab_plan {
 
 /* Fills it and checks what does not go together, each finding at its value: look at
  * dea_finding_count. out: to be freed, also after a failure. */
-dea_status dea_fab_plan_make(struct dea_context *ctx, const struct dea_design *design,
-                             const struct dea_device *device, struct dea_fab_plan *out);
+dea_status dea_fab_plan_build(struct dea_context *ctx, const struct dea_design *design,
+                              const struct dea_device *device, struct dea_fab_plan *out);
 void dea_fab_plan_free(struct dea_fab_plan *plan);
 
 /* Adds pieces on tabs with their anchors, on the frame, and perhaps their tabs, which overlap. */

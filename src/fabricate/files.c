@@ -157,7 +157,7 @@ dea_status dea_workshop_prepare(struct dea_context *ctx, const struct dea_worksh
   if (options->force && !options->drawing_only) {
     DEA_TRY(ctx, forget_sheets(ctx, workshop, directory));
   }
-  return dea_folder_make(ctx, directory);
+  return dea_folder_create(ctx, directory);
 }
 
 static dea_status write_sheet(struct dea_context *ctx, const struct dea_workshop *workshop,

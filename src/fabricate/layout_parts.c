@@ -630,7 +630,7 @@ static dea_status add_plies_and_bodies(struct dea_workshop *w)
   return DEA_OK;
 }
 
-dea_status dea_parts_make(struct dea_context *ctx, struct dea_workshop *w)
+dea_status dea_parts_build(struct dea_context *ctx, struct dea_workshop *w)
 {
   const struct dea_layout *l = w->plan.layout;
   size_t most = 2 + 4 * l->ply_count + l->body_count;

@@ -16,7 +16,7 @@
 
 /* Fills the list of parts of a workshop whose plan is made, unchecked. Notes say what is to be
  * known before cutting, such as loose pieces of a stencil. */
-dea_status dea_parts_make(struct dea_context *ctx, struct dea_workshop *workshop);
+dea_status dea_parts_build(struct dea_context *ctx, struct dea_workshop *workshop);
 
 /* Pieces that a part falls into once it is cut. */
 size_t dea_part_pieces(const struct dea_part *part);

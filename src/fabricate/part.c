@@ -5,8 +5,8 @@
 #include <stdio.h>
 
 /* Room for one more item of an array; false when memory is short. */
-static bool make_room(struct dea_part *part, void **items, size_t size, size_t count,
-                      size_t *capacity)
+static bool reserve(struct dea_part *part, void **items, size_t size, size_t count,
+                    size_t *capacity)
 {
   if (part->failed || count < *capacity) {
     return !part->failed;
@@ -25,7 +25,7 @@ static bool make_room(struct dea_part *part, void **items, size_t size, size_t c
 static void begin(struct dea_part *part, enum dea_layer layer, bool closed)
 {
   void *items = part->contour;
-  if (make_room(part, &items, sizeof *part->contour, part->contour_count, &part->contour_room)) {
+  if (reserve(part, &items, sizeof *part->contour, part->contour_count, &part->contour_room)) {
     part->contour = items;
     part->contour[part->contour_count++] =
         (struct dea_part_contour){layer, closed, false, part->vertex_count, 0};
@@ -36,7 +36,7 @@ static void add_vertex(struct dea_part *part, double x, double y, double bulge,
                        struct dea_location location)
 {
   void *items = part->vertex;
-  if (make_room(part, &items, sizeof *part->vertex, part->vertex_count, &part->vertex_room)) {
+  if (reserve(part, &items, sizeof *part->vertex, part->vertex_count, &part->vertex_room)) {
     part->vertex = items;
     part->vertex[part->vertex_count++] = (struct dea_vertex){x, y, bulge, location};
     part->contour[part->contour_count - 1].count++;

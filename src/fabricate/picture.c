@@ -105,7 +105,7 @@ static void add_frame(struct picture *p, const struct dea_fab_plan *plan)
 }
 
 /* p: zero; to be freed. */
-static void make(struct picture *p, const struct dea_workshop *w)
+static void build(struct picture *p, const struct dea_workshop *w)
 {
   const struct dea_fab_plan *plan = &w->plan;
   const struct dea_layout_ply *film = dea_layout_film(plan->layout);
@@ -139,7 +139,7 @@ static void destroy(struct picture *p)
 void dea_picture_size(const struct dea_workshop *workshop, double out_mm[2])
 {
   struct picture p = {0};
-  make(&p, workshop);
+  build(&p, workshop);
   dea_device_drawing_size(&p.drawing, out_mm);
   destroy(&p);
 }
@@ -147,7 +147,7 @@ void dea_picture_size(const struct dea_workshop *workshop, double out_mm[2])
 void dea_picture_draw(const struct dea_paper *paper, const struct dea_workshop *workshop)
 {
   struct picture p = {0};
-  make(&p, workshop);
+  build(&p, workshop);
   dea_device_drawing_draw(paper, &p.drawing);
   destroy(&p);
 }

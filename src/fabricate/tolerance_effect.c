@@ -173,8 +173,8 @@ static dea_status differentiate(struct dea_context *ctx, const struct solver_sta
 }
 
 /* The displacement with the fibre tips farther from the centre; NAN: none. */
-static dea_status ask_moved(struct dea_context *ctx, const struct solver_state *s, int column,
-                            double by_m, double voltage_V, double *out)
+static dea_status solve_moved(struct dea_context *ctx, const struct solver_state *s, int column,
+                              double by_m, double voltage_V, double *out)
 {
   struct dea_device moved = *s->device;
   struct solver_state other = {.type = s->type, .design = s->design, .device = &moved};
@@ -207,8 +207,8 @@ static dea_status move_tips(struct dea_context *ctx, const struct solver_state *
       at == DEA_NUMBERS_MAX) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, ask_moved(ctx, s, column, -by_m, out->voltage_V, &low));
-  DEA_TRY(ctx, ask_moved(ctx, s, column, by_m, out->voltage_V, &high));
+  DEA_TRY(ctx, solve_moved(ctx, s, column, -by_m, out->voltage_V, &low));
+  DEA_TRY(ctx, solve_moved(ctx, s, column, by_m, out->voltage_V, &high));
   if (at == out->number_count) {
     out->number[at] = (struct dea_design_number){
         .key = "fibres.tip_radius", .value = s->device->fibre_tip_radius_m, .unit = "m"};
@@ -221,8 +221,8 @@ static dea_status move_tips(struct dea_context *ctx, const struct solver_state *
 }
 
 /* Where the monitors are. */
-static dea_status see_monitors(struct dea_context *ctx, const struct solver_state *s,
-                               struct dea_tolerance_effects *out)
+static dea_status observe_monitors(struct dea_context *ctx, const struct solver_state *s,
+                                   struct dea_tolerance_effects *out)
 {
   const struct dea_layout *layout = s->device->layout;
   struct dea_observation observed;
@@ -250,14 +250,14 @@ static dea_status find(struct dea_context *ctx, struct solver_state *s,
     out->seen[out->seen_count++] =
         (struct dea_seen){question->name, question->motion, true, dea_point_get(&s->point, column)};
   } else {
-    DEA_TRY(ctx, see_monitors(ctx, s, out));
+    DEA_TRY(ctx, observe_monitors(ctx, s, out));
   }
   DEA_TRY(ctx, differentiate(ctx, s, column, out));
   return question != NULL && question->fibres ? move_tips(ctx, s, column, out) : DEA_OK;
 }
 
-static dea_status ask_model(struct dea_context *ctx, struct solver_state s,
-                            const struct question *question, struct dea_tolerance_effects *out)
+static dea_status solve_model(struct dea_context *ctx, struct solver_state s,
+                              const struct question *question, struct dea_tolerance_effects *out)
 {
   const size_t errors = dea_finding_trial_begin(ctx); // the sheet says what is to be said
   const dea_status status = find(ctx, &s, question, out);
@@ -277,12 +277,12 @@ dea_status dea_tolerance_effects_find(struct dea_context *ctx, const struct dea_
     return DEA_OK;
   }
   if (device->layout->monitor_count > 0) {
-    return DEA_CHAIN(ctx, ask_model(ctx, s, NULL, out));
+    return DEA_CHAIN(ctx, solve_model(ctx, s, NULL, out));
   }
   for (size_t q = 0; device->disc && q < sizeof questions / sizeof questions[0]; q++) {
     if (questions[q].fibres == (device->fibre_count > 0) && isnan(out->voltage_V)) {
       s.type = dea_model_find(questions[q].model);
-      DEA_TRY(ctx, ask_model(ctx, s, &questions[q], out));
+      DEA_TRY(ctx, solve_model(ctx, s, &questions[q], out));
     }
   }
   return DEA_OK;

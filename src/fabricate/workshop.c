@@ -110,14 +110,14 @@ static dea_status lay_out(struct dea_context *ctx, struct dea_workshop *w)
   return DEA_OK;
 }
 
-static dea_status make(struct dea_context *ctx, const struct dea_design *design,
-                       const struct dea_device *device, struct dea_workshop *w)
+static dea_status build(struct dea_context *ctx, const struct dea_design *design,
+                        const struct dea_device *device, struct dea_workshop *w)
 {
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   w->memory.ctx = ctx;
-  DEA_TRY(ctx, dea_fab_plan_make(ctx, design, device, &w->plan));
+  DEA_TRY(ctx, dea_fab_plan_build(ctx, design, device, &w->plan));
   if (dea_finding_count(ctx, DEA_ERROR) == errors) { // else parts have no form
-    DEA_TRY(ctx, dea_parts_make(ctx, w));
+    DEA_TRY(ctx, dea_parts_build(ctx, w));
     DEA_TRY(ctx, check_parts(ctx, w));
     DEA_TRY(ctx, lay_out(ctx, w));
   }
@@ -133,7 +133,7 @@ dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design 
   *out = NULL;
   *out = dea_alloc(ctx, 1, sizeof **out);
   DEA_TRY_MEMORY(*out != NULL);
-  dea_status status = make(ctx, design, device, *out);
+  dea_status status = build(ctx, design, device, *out);
   if (status != DEA_OK) {
     dea_workshop_destroy(ctx, *out);
     *out = NULL;

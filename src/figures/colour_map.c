@@ -44,8 +44,8 @@ const struct dea_surface_record *dea_surface_choose(const struct dea_result *res
   return best;
 }
 
-dea_status dea_surface_say(struct dea_context *ctx, const char *figure,
-                           const struct dea_surface_record *record, double voltage_V)
+dea_status dea_surface_report(struct dea_context *ctx, const char *figure,
+                              const struct dea_surface_record *record, double voltage_V)
 {
   const double rounding = 1e-9; // relative, of voltages in steps
   if (!(fabs(record->voltage_V - voltage_V) > rounding * fabs(voltage_V))) { // or NAN

@@ -11,8 +11,8 @@
 const struct dea_surface_record *dea_surface_choose(const struct dea_result *result,
                                                     double voltage_V);
 /* A note where that is another voltage than the one that was asked for. */
-dea_status dea_surface_say(struct dea_context *ctx, const char *figure,
-                           const struct dea_surface_record *record, double voltage_V);
+dea_status dea_surface_report(struct dea_context *ctx, const char *figure,
+                              const struct dea_surface_record *record, double voltage_V);
 /* Up to `max` of them from first to last, evenly; returns their number. */
 size_t dea_surface_spread(const struct dea_result *result, size_t max,
                           const struct dea_surface_record *out[]);

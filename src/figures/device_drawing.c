@@ -163,8 +163,8 @@ static void hatch_region(const struct view *v, size_t number)
   v->paper->type->unclip(v->paper->canvas);
 }
 
-static void say(const struct view *v, double x, double y, double size, bool bold, unsigned colour,
-                const char *words)
+static void draw_text(const struct view *v, double x, double y, double size, bool bold,
+                      unsigned colour, const char *words)
 {
   if (v->paper != NULL) {
     v->paper->type->text(v->paper->canvas, x, y, size, 0, DEA_ALIGN_LEFT, bold, colour, words);
@@ -273,8 +273,8 @@ static void draw_monitors(const struct view *v)
     type->line(v->paper->canvas, at[0], at[1] - 1.2, at[0], at[1] + 1.2);
     type->stroke(v->paper->canvas, 0.4, MONITOR, 0);
     monitor_numbers(v, i, numbers, sizeof numbers);
-    say(v, at[0] + 1.2, m->kind == DEA_MONITOR_REGION ? at[1] - 3.4 : at[1] + 1.2, 2.9, false,
-        MONITOR, numbers);
+    draw_text(v, at[0] + 1.2, m->kind == DEA_MONITOR_REGION ? at[1] - 3.4 : at[1] + 1.2, 2.9, false,
+              MONITOR, numbers);
   }
 }
 
@@ -800,7 +800,7 @@ static void add_heading(struct view *v, const char *words)
 {
   v->key_y -= (v->column == 1 ? line_height : 0) + 1.5;
   v->column = 0;
-  say(v, margin, v->key_y, key_size, true, INK, words);
+  draw_text(v, margin, v->key_y, key_size, true, INK, words);
   v->key_y -= line_height;
 }
 
@@ -924,7 +924,7 @@ static void add_monitors(struct view *v)
     char number[24];
     double x = margin + v->column * 0.5 * (page_width - 2 * margin);
     snprintf(number, sizeof number, "%zu", i + 1);
-    say(v, x + 2, v->key_y, key_size, false, MONITOR, number);
+    draw_text(v, x + 2, v->key_y, key_size, false, MONITOR, number);
     add_key(v, NULL, "%.80s", l->monitors[i].name);
   }
 }
@@ -969,7 +969,7 @@ static void draw_scale_bar(const struct view *v, double y)
   snprintf(words, sizeof words, "%s mm", text);
   type->line(v->paper->canvas, margin, y, margin + v->scale * length, y);
   type->stroke(v->paper->canvas, 0.7, INK, 0);
-  say(v, margin, y + 1.5, 2.3, false, GREY, words);
+  draw_text(v, margin, y + 1.5, 2.3, false, GREY, words);
 }
 
 /* The box around plies, bodies, and what is drawn beside them. */
@@ -1045,8 +1045,8 @@ void dea_device_drawing_draw(const struct dea_paper *paper,
   dea_dimensions_callouts(paper, box, callouts, call_out_plan(&v, callouts));
   double words = v.plan_y - 0.5 * v.plan_room;
   draw_scale_bar(&v, words);
-  say(&v, margin, words - 7, 2.9, true, INK, "Section along x, through the middle");
-  say(&v, margin, words - 11, 2.3, false, GREY, "thickness not to scale");
+  draw_text(&v, margin, words - 7, 2.9, true, INK, "Section along x, through the middle");
+  draw_text(&v, margin, words - 11, 2.3, false, GREY, "thickness not to scale");
   draw_section(&v);
   add_legend(&v);
 }

@@ -42,9 +42,9 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space,
 }
 
 /* Pictures of all records on one mesh; *count: how many were made, also after a failure. */
-static dea_status make_pictures(struct dea_context *ctx, const struct dea_result *result,
-                                const struct dea_surface_record *records[], size_t record_count,
-                                struct dea_colour_map *pictures, size_t *count)
+static dea_status build_pictures(struct dea_context *ctx, const struct dea_result *result,
+                                 const struct dea_surface_record *records[], size_t record_count,
+                                 struct dea_colour_map *pictures, size_t *count)
 {
   const struct dea_field_mesh *first = records[0]->mesh;
   *count = 0;
@@ -70,7 +70,7 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
   if (!*drawn) {
     return DEA_OK;
   }
-  dea_status status = make_pictures(ctx, result, records, count, pictures, &count);
+  dea_status status = build_pictures(ctx, result, records, count, pictures, &count);
   if (status == DEA_OK) {
     status = dea_view3d_write(ctx, &figure, pictures, count, &options->format, directory);
   }

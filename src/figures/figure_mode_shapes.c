@@ -28,8 +28,8 @@ static const struct dea_surface_record *choose(const struct dea_result *result, 
 }
 
 /* A shape as the displacement of a picture; one unit is drawn as a micrometre. */
-static dea_status make_picture(struct dea_context *ctx, const struct dea_surface_record *record,
-                               const struct dea_mesh_field *shape, struct dea_colour_map *out)
+static dea_status build_picture(struct dea_context *ctx, const struct dea_surface_record *record,
+                                const struct dea_mesh_field *shape, struct dea_colour_map *out)
 {
   struct dea_field_mesh mesh = *record->mesh; // lends all but one array
   const struct dea_surface_record moved = {.voltage_V = record->voltage_V, .mesh = &mesh};
@@ -72,8 +72,8 @@ static struct dea_load_point point_of(const struct dea_result *result, double vo
   return dea_load_point_empty();
 }
 
-static dea_status make_maps(struct dea_context *ctx, const struct dea_result *result,
-                            const struct dea_surface_record *record, struct maps *maps)
+static dea_status build_maps(struct dea_context *ctx, const struct dea_result *result,
+                             const struct dea_surface_record *record, struct maps *maps)
 {
   maps->voltage_V = record->voltage_V;
   for (size_t k = 1; k <= MAPS_MAX; k++) {
@@ -86,7 +86,7 @@ static dea_status make_maps(struct dea_context *ctx, const struct dea_result *re
     struct dea_load_point point = point_of(result, record->voltage_V, k);
     maps->frequency_Hz[maps->count] = point.frequency_Hz;
     maps->out_of_plane[maps->count] = point.mode_out_of_plane;
-    DEA_TRY(ctx, make_picture(ctx, record, shape, &maps->pictures[maps->count++]));
+    DEA_TRY(ctx, build_picture(ctx, record, shape, &maps->pictures[maps->count++]));
   }
   return DEA_OK;
 }
@@ -165,8 +165,8 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
   if (!*drawn) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_surface_say(ctx, name, record, options->voltage_V));
-  dea_status status = make_maps(ctx, result, record, &maps);
+  DEA_TRY(ctx, dea_surface_report(ctx, name, record, options->voltage_V));
+  dea_status status = build_maps(ctx, result, record, &maps);
   status = status == DEA_OK ? write_maps(ctx, &maps, &options->format, directory) : status;
   for (size_t k = 0; k < maps.count; k++) {
     dea_colour_map_free(ctx, &maps.pictures[k]);

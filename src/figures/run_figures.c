@@ -100,7 +100,7 @@ dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *r
   struct dea_plot_folder folder = {.ctx = ctx, .format = &options->format, .path = directory};
   DEA_TRY(ctx, check_names(ctx, options));
   const bool was_there = dea_path_exists(directory);
-  DEA_TRY(ctx, dea_folder_make(ctx, directory));
+  DEA_TRY(ctx, dea_folder_create(ctx, directory));
   const struct dea_figure *figure;
   dea_status status = DEA_OK;
   for (size_t f = 0; (figure = dea_figure_get(f)) != NULL && status == DEA_OK; f++) {

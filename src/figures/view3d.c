@@ -312,7 +312,7 @@ dea_status dea_view3d_write_one(struct dea_context *ctx, const struct dea_view3d
   if (!*drawn) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_surface_say(ctx, figure->name, record, options->voltage_V));
+  DEA_TRY(ctx, dea_surface_report(ctx, figure->name, record, options->voltage_V));
   dea_status status = dea_colour_map_create(ctx, result, record, figure->pieces, &picture);
   if (status == DEA_OK) {
     status = dea_view3d_write(ctx, figure, &picture, 1, &options->format, directory);

@@ -98,7 +98,7 @@ static size_t follow_ray(struct nesting *n, size_t c, const double x[2])
 
 /* The same by looking at contours whose boxes hold x only; SIZE_MAX when one of them is long, so
  * that the ray is quicker. */
-static size_t look_around(struct nesting *n, size_t c, const double x[2])
+static size_t find_around(struct nesting *n, size_t c, const double x[2])
 {
   const double at[4] = {x[0], x[1], x[0], x[1]};
   size_t cursor = 0, other, seen = 0;
@@ -120,7 +120,7 @@ static void find_parent(struct nesting *n, size_t c)
 {
   double x[2];
   find_start(&n->all, c > 0 ? n->region->end[c - 1] : 0, x);
-  size_t depth = 0, seen = look_around(n, c, x);
+  size_t depth = 0, seen = find_around(n, c, x);
   seen = seen != SIZE_MAX ? seen : follow_ray(n, c, x);
   n->parent[c] = c;
   for (size_t i = 0; i < seen; i++) {

@@ -59,8 +59,8 @@ struct work {
 };
 
 /* Room for one more in an owned array. */
-static dea_status make_room(struct dea_context *ctx, void **array, size_t count, size_t *capacity,
-                            size_t size)
+static dea_status reserve(struct dea_context *ctx, void **array, size_t count, size_t *capacity,
+                          size_t size)
 {
   if (count < *capacity) {
     return DEA_OK;
@@ -152,7 +152,7 @@ static dea_status add_cut(struct work *w, size_t piece, const double x[2])
   void *cut = w->cut;
   size_t node;
   DEA_TRY(w->ctx, dea_point_map_add(&w->node, x, &node));
-  DEA_TRY(w->ctx, make_room(w->ctx, &cut, w->cut_count, &w->cut_room, sizeof *w->cut));
+  DEA_TRY(w->ctx, reserve(w->ctx, &cut, w->cut_count, &w->cut_room, sizeof *w->cut));
   w->cut = cut;
   const double *at = w->node.point[node];
   double along = apart(p->from, at);
@@ -228,7 +228,7 @@ static dea_status find_edges(struct work *w)
       continue;
     }
     void *edge = w->edge;
-    DEA_TRY(w->ctx, make_room(w->ctx, &edge, w->edge_count, &w->edge_room, sizeof *w->edge));
+    DEA_TRY(w->ctx, reserve(w->ctx, &edge, w->edge_count, &w->edge_room, sizeof *w->edge));
     w->edge = edge;
     bool clockwise = w->all.piece[a->piece].sweep < 0;
     w->edge[w->edge_count++] =
@@ -275,8 +275,8 @@ static dea_status add_point(struct ring_writer *writer, const double x[2])
 {
   struct dea_context *ctx = writer->work->ctx;
   void *point = writer->rings->point;
-  DEA_TRY(ctx, make_room(ctx, &point, writer->point_count, &writer->point_room,
-                         sizeof *writer->rings->point));
+  DEA_TRY(ctx, reserve(ctx, &point, writer->point_count, &writer->point_room,
+                       sizeof *writer->rings->point));
   writer->rings->point = point;
   memcpy(writer->rings->point[writer->point_count++], x, 2 * sizeof *x);
   return DEA_OK;
@@ -298,7 +298,7 @@ static dea_status add_edge(struct ring_writer *writer, size_t number)
     DEA_TRY(w->ctx, add_point(writer, x));
     DEA_TRY(w->ctx, dea_point_map_add(&w->chord, x, &index));
     DEA_TRY(w->ctx,
-            make_room(w->ctx, &chord_edge, w->chord.count, &w->chord_room, sizeof *w->chord_edge));
+            reserve(w->ctx, &chord_edge, w->chord.count, &w->chord_room, sizeof *w->chord_edge));
     w->chord_edge = chord_edge;
     if (index == known) { // an arc that two pieces share is known from the first
       w->chord_edge[index] = number;
@@ -358,7 +358,7 @@ struct reading {
 };
 
 /* Node of a point, or SIZE_MAX and the edge between nodes that it belongs to. */
-static bool look_up(struct reading *r, size_t i, size_t *node, size_t *edge)
+static bool find_node(struct reading *r, size_t i, size_t *node, size_t *edge)
 {
   const struct work *w = r->work;
   const double *x = r->point[i % r->count];
@@ -391,7 +391,7 @@ static size_t read_pieces(struct reading *r, struct found *pieces)
 {
   const struct work *w = r->work;
   size_t node, edge, first = 0, count = 0;
-  while (first < r->count && look_up(r, first, &node, &edge) && node == SIZE_MAX) {
+  while (first < r->count && find_node(r, first, &node, &edge) && node == SIZE_MAX) {
     first++;
   }
   if (r->unknown != NULL || first == r->count) {
@@ -399,12 +399,12 @@ static size_t read_pieces(struct reading *r, struct found *pieces)
     return 0;
   }
   for (size_t i = first; i < first + r->count;) {
-    look_up(r, i, &node, &edge);
+    find_node(r, i, &node, &edge);
     struct found piece = {node, SIZE_MAX, SIZE_MAX, 0};
     size_t next = SIZE_MAX, inner = SIZE_MAX;
     do { // over the points between nodes
       i++;
-      if (!look_up(r, i, &next, &edge) ||
+      if (!find_node(r, i, &next, &edge) ||
           (next == SIZE_MAX && inner != SIZE_MAX && edge != inner)) {
         r->unknown = r->point[i % r->count];
         return 0;

@@ -52,8 +52,8 @@ dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, con
   return dea_fail(drawing->ctx, DEA_E_DESIGN, "%s:%zu: %s", drawing->file, line, text);
 }
 
-dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t count,
-                                 size_t *capacity, size_t size)
+dea_status dea_drawing_reserve(struct dea_context *ctx, void **array, size_t count,
+                               size_t *capacity, size_t size)
 {
   if (count < *capacity) {
     return DEA_OK;
@@ -80,7 +80,7 @@ dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size
   }
   void *names = d->layer;
   DEA_TRY(d->ctx,
-          dea_drawing_make_room(d->ctx, &names, d->layer_count, &d->layer_room, sizeof *d->layer));
+          dea_drawing_reserve(d->ctx, &names, d->layer_count, &d->layer_room, sizeof *d->layer));
   d->layer = names;
   const char *kept = dea_intern(d->ctx, name);
   DEA_TRY_MEMORY(kept != NULL);
@@ -109,7 +109,7 @@ dea_status dea_drawing_end_path(struct dea_drawing *drawing, size_t layer, bool 
   }
   void *paths = d->path;
   DEA_TRY(d->ctx,
-          dea_drawing_make_room(d->ctx, &paths, d->path_count, &d->path_room, sizeof *d->path));
+          dea_drawing_reserve(d->ctx, &paths, d->path_count, &d->path_room, sizeof *d->path));
   d->path = paths;
   d->path[d->path_count++] = (struct dea_drawing_path){layer, d->vertex_count, closed};
   return DEA_OK;
@@ -129,8 +129,8 @@ dea_status dea_drawing_skip(struct dea_drawing *drawing, size_t layer, const cha
     }
   }
   void *skipped = d->skipped;
-  DEA_TRY(d->ctx, dea_drawing_make_room(d->ctx, &skipped, d->skipped_count, &d->skipped_room,
-                                        sizeof *d->skipped));
+  DEA_TRY(d->ctx, dea_drawing_reserve(d->ctx, &skipped, d->skipped_count, &d->skipped_room,
+                                      sizeof *d->skipped));
   d->skipped = skipped;
   d->skipped[d->skipped_count++] = entry;
   return DEA_OK;

@@ -119,8 +119,8 @@ dea_status dea_drawing_skip(struct dea_drawing *drawing, size_t layer, const cha
 /* Notes on what the reader assumed: `assumed` of a unit that the file does not say, and curves. */
 dea_status dea_drawing_add_notes(const struct dea_drawing *drawing, const char *assumed);
 /* Room for one more of `size` in an owned array of *room. */
-dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t count,
-                                 size_t *capacity, size_t size);
+dea_status dea_drawing_reserve(struct dea_context *ctx, void **array, size_t count,
+                               size_t *capacity, size_t size);
 /* A finding at a line and DEA_E_DESIGN. */
 dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, const char *format,
                              ...) DEA_PRINTF(3, 4);

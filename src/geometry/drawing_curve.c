@@ -41,8 +41,8 @@ static dea_status add_vertex(struct dea_drawing *d, const double x_m[2])
                              d->settings.vertices_max);
   }
   void *vertices = d->vertex;
-  DEA_TRY(d->ctx, dea_drawing_make_room(d->ctx, &vertices, d->vertex_count, &d->vertex_room,
-                                        sizeof *d->vertex));
+  DEA_TRY(d->ctx, dea_drawing_reserve(d->ctx, &vertices, d->vertex_count, &d->vertex_room,
+                                      sizeof *d->vertex));
   d->vertex = vertices;
   d->vertex[d->vertex_count++] =
       (struct dea_vertex){x_m[0], x_m[1], 0, {d->file, d->line, d->line > 0}};

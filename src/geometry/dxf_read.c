@@ -174,7 +174,7 @@ static dea_status number(struct reader *r, double *out)
 
 static dea_status add_to(struct reader *r, struct list *list, const void *item, size_t size)
 {
-  DEA_TRY(r->ctx, dea_drawing_make_room(r->ctx, &list->data, list->count, &list->capacity, size));
+  DEA_TRY(r->ctx, dea_drawing_reserve(r->ctx, &list->data, list->count, &list->capacity, size));
   memcpy((char *)list->data + list->count++ * size, item, size);
   return DEA_OK;
 }
@@ -409,7 +409,7 @@ static dea_status end_polyline(struct reader *r)
 
 /* ---- blocks ---- */
 
-static dea_status take_pair(struct reader *r, long code);
+static dea_status parse_pair(struct reader *r, long code);
 static dea_status end_entity(struct reader *r);
 
 static dea_status read_block(struct reader *r, const struct block *block)
@@ -422,7 +422,7 @@ static dea_status read_block(struct reader *r, const struct block *block)
   r->entity = (struct entity){.layer = r->layer};
   while (status == DEA_OK && more) {
     status = read_pair(r, &code, &more);
-    status = status == DEA_OK && more ? take_pair(r, code) : status;
+    status = status == DEA_OK && more ? parse_pair(r, code) : status;
   }
   status = status == DEA_OK ? end_entity(r) : status;
   status = status == DEA_OK ? end_polyline(r) : status;
@@ -628,7 +628,7 @@ static enum section section_of(const char *name)
                                          : OTHER_SECTION;
 }
 
-static dea_status take_pair(struct reader *r, long code)
+static dea_status parse_pair(struct reader *r, long code)
 {
   if (code == 0) {
     DEA_TRY(r->ctx, end_entity(r));
@@ -660,7 +660,7 @@ static dea_status read_all(struct reader *r)
   for (size_t n = 0; more; n++) {
     DEA_TRY(r->ctx, read_pair(r, &code, &more));
     if (more) {
-      DEA_TRY(r->ctx, take_pair(r, code));
+      DEA_TRY(r->ctx, parse_pair(r, code));
       any |= r->section == ENTITIES;
     }
     if ((n & 65535) == 65535 && dea_interrupted(r->ctx)) {

@@ -8,7 +8,7 @@ struct near {
   double distance, p[2], q[2];
 };
 
-static void take(struct near *best, const double p[2], const double q[2])
+static void keep_nearest(struct near *best, const double p[2], const double q[2])
 {
   double distance = hypot(p[0] - q[0], p[1] - q[1]);
   if (distance < best->distance) {
@@ -23,7 +23,7 @@ static void try_from(struct near *best, const struct dea_piece *a, const struct 
   double start[2] = {x, y}, p[2], q[2];
   dea_piece_nearest(a, start, p);
   dea_piece_nearest(b, p, q);
-  take(best, p, q);
+  keep_nearest(best, p, q);
 }
 
 static void try_line_circle(struct near *best, const struct dea_piece *line,

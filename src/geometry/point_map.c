@@ -46,7 +46,7 @@ size_t dea_point_map_find(const struct dea_point_map *map, const double x_m[2])
   return found;
 }
 
-static void put(struct dea_point_map *map, size_t i)
+static void insert(struct dea_point_map *map, size_t i)
 {
   double size = cell_size(map);
   size_t h = hash(map, floor(map->point[i][0] / size), floor(map->point[i][1] / size));
@@ -71,7 +71,7 @@ static dea_status grow(struct dea_point_map *map)
     map->head[h] = SIZE_MAX;
   }
   for (size_t i = 0; i < map->count; i++) {
-    put(map, i);
+    insert(map, i);
   }
   return DEA_OK;
 }
@@ -85,7 +85,7 @@ dea_status dea_point_map_add(struct dea_point_map *map, const double x_m[2], siz
   DEA_TRY(map->ctx, map->count == map->capacity ? grow(map) : DEA_OK);
   map->point[map->count][0] = x_m[0];
   map->point[map->count][1] = x_m[1];
-  put(map, map->count);
+  insert(map, map->count);
   *index = map->count++;
   return DEA_OK;
 }

@@ -4,8 +4,8 @@
 #include <string.h>
 
 /* Room for `count` elements of an array that holds `used`; false on failure. */
-static bool make_room(struct dea_region *region, void **array, size_t used, size_t count,
-                      size_t *capacity, size_t size)
+static bool reserve(struct dea_region *region, void **array, size_t used, size_t count,
+                    size_t *capacity, size_t size)
 {
   if (count <= *capacity - used) {
     return true;
@@ -24,11 +24,11 @@ static bool make_room(struct dea_region *region, void **array, size_t used, size
 void dea_region_add(struct dea_region *region, const struct dea_vertex *vertices, size_t count)
 {
   void *vertex = region->vertex, *end = region->end;
-  bool good = !region->failed && make_room(region, &vertex, region->vertex_count, count,
-                                           &region->vertex_room, sizeof *region->vertex);
+  bool good = !region->failed && reserve(region, &vertex, region->vertex_count, count,
+                                         &region->vertex_room, sizeof *region->vertex);
   region->vertex = vertex;
-  good = good && make_room(region, &end, region->contour_count, 1, &region->contour_room,
-                           sizeof *region->end);
+  good = good && reserve(region, &end, region->contour_count, 1, &region->contour_room,
+                         sizeof *region->end);
   region->end = end;
   if (good) {
     memcpy(region->vertex + region->vertex_count, vertices, count * sizeof *vertices);

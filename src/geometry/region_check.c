@@ -160,7 +160,7 @@ static bool goes_through(const struct pair *p, const double x[2])
 }
 
 /* What is wrong with two pieces; NULL when nothing is. */
-static const char *look_at(struct pair *p, const double **where)
+static const char *check_pair(struct pair *p, const double **where)
 {
   find_meetings(p);
   if (p->count == 0) {
@@ -222,7 +222,7 @@ static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *
       struct pair pair = {.all = all, .i = i, .j = j, .a = &all->piece[i], .b = &all->piece[j]};
       pair.snap = all->snap_m;
       const double *at = NULL;
-      const char *what = look_at(&pair, &at);
+      const char *what = check_pair(&pair, &at);
       if (what != NULL) {
         return dea_region_fault(ctx, all->start[i].location, at[0], at[1], what);
       }
@@ -236,7 +236,7 @@ static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *
 
 /* What to say of a contour without an area: one that goes as far around one side of its crossing as
  * around the other has none either. */
-static dea_status say_no_area(struct dea_context *ctx, const struct dea_contour *contour)
+static dea_status report_no_area(struct dea_context *ctx, const struct dea_contour *contour)
 {
   const struct dea_vertex *first = &contour->vertex[0];
   struct dea_region alone = {.ctx = ctx};
@@ -277,7 +277,7 @@ dea_status dea_region_check(struct dea_context *ctx, const struct dea_region *re
     }
     if (contour.count < 2 ||
         fabs(dea_contour_area_m2(&contour)) <= snap * dea_contour_length_m(&contour)) {
-      return say_no_area(ctx, &contour);
+      return report_no_area(ctx, &contour);
     }
   }
   struct dea_pieces all;

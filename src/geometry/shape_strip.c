@@ -25,7 +25,7 @@ static double direction(const struct strip *s, size_t i, double out[2])
   return length;
 }
 
-static void put(struct strip *s, const double at[2], double x, double y, double bulge)
+static void add_vertex(struct strip *s, const double at[2], double x, double y, double bulge)
 {
   s->v[s->v_count++] =
       (struct dea_vertex){at[0] + s->half * x, at[1] + s->half * y, bulge, s->location};
@@ -33,7 +33,7 @@ static void put(struct strip *s, const double at[2], double x, double y, double 
 
 /* The corner at a point between directions a and b, on the side of the normals that point to the
  * right of the way: an arc where the way turns left, else the crossing of both sides. */
-static bool put_corner(struct strip *s, const double at[2], const double a[2], const double b[2],
+static bool add_corner(struct strip *s, const double at[2], const double a[2], const double b[2],
                        double shorter)
 {
   double sine = a[0] * b[1] - a[1] * b[0], cosine = a[0] * b[0] + a[1] * b[1];
@@ -42,16 +42,16 @@ static bool put_corner(struct strip *s, const double at[2], const double a[2], c
     return false;
   }
   if (turn > 1e-12) {
-    put(s, at, a[1], -a[0], tan(0.25 * turn));
-    put(s, at, b[1], -b[0], 0);
+    add_vertex(s, at, a[1], -a[0], tan(0.25 * turn));
+    add_vertex(s, at, b[1], -b[0], 0);
     return true;
   }
-  put(s, at, (a[1] + b[1]) / (1 + cosine), -(a[0] + b[0]) / (1 + cosine), 0);
+  add_vertex(s, at, (a[1] + b[1]) / (1 + cosine), -(a[0] + b[0]) / (1 + cosine), 0);
   return s->half * tan(0.5 * fabs(turn)) < shorter;
 }
 
 /* One side, forwards (on the right) or backwards. NULL, or the point at which it cannot be made. */
-static const double *put_side(struct strip *s, bool back)
+static const double *add_side(struct strip *s, bool back)
 {
   size_t n = s->count;
   for (size_t k = 0; k < n; k++) {
@@ -66,16 +66,16 @@ static const double *put_side(struct strip *s, bool back)
     }
     double sign = back ? -1 : 1;
     if (starts) {
-      put(s, s->point[i], sign * after[1], -sign * after[0], 0);
+      add_vertex(s, s->point[i], sign * after[1], -sign * after[0], 0);
     } else if (ends) {
-      put(s, s->point[i], sign * before[1], -sign * before[0], 0);
+      add_vertex(s, s->point[i], sign * before[1], -sign * before[0], 0);
     } else {
       double in[2] = {before[0], before[1]}, out[2] = {after[0], after[1]};
       for (int c = 0; c < 2 && back; c++) {
         in[c] = -after[c];
         out[c] = -before[c];
       }
-      if (!put_corner(s, s->point[i], in, out, fmin(length, other))) {
+      if (!add_corner(s, s->point[i], in, out, fmin(length, other))) {
         return s->point[i];
       }
     }
@@ -88,7 +88,7 @@ static dea_status build(struct strip *s, struct dea_region *own)
   size_t sides[2] = {0, 0};
   for (int back = 0; back < 2; back++) {
     size_t first = s->v_count;
-    const double *at = put_side(s, back == 1);
+    const double *at = add_side(s, back == 1);
     if (at != NULL) {
       return dea_region_fault(own->ctx, s->location, at[0], at[1],
                               "the strip is too wide for its corner");

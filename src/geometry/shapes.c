@@ -70,7 +70,7 @@ static const struct dea_shape_parameter sector[] = {
     {"end", DEA_SHAPE_ANGLE, false, 0, "direction of the other side, counter-clockwise from it"}};
 
 /* An arc about c from an angle over `sweep`, in two halves so that no bulge is large. */
-static size_t put_arc(struct dea_vertex *v, const double *c, double radius, double from,
+static size_t add_arc(struct dea_vertex *v, const double *c, double radius, double from,
                       double sweep, struct dea_location location)
 {
   for (int k = 0; k < 3; k++) {
@@ -94,9 +94,9 @@ static dea_status add_ring_sector(struct dea_region *region, const double *centr
                  "the sector does not end within a turn counter-clockwise of its start");
   }
   struct dea_vertex v[6];
-  size_t n = put_arc(v, centre, outer, start, sweep, location);
+  size_t n = add_arc(v, centre, outer, start, sweep, location);
   if (inner > 0) {
-    n += put_arc(v + n, centre, inner, end, -sweep, location);
+    n += add_arc(v + n, centre, inner, end, -sweep, location);
   } else {
     v[n++] = (struct dea_vertex){centre[0], centre[1], 0, location};
   }

@@ -69,7 +69,7 @@ static double of_row(const struct dea_csv_columns *table, enum column column,
   return table->values[column] != NULL ? table->values[column][i] : all->si;
 }
 
-static dea_status take_rows(struct dea_breakdown_fit *fit, const struct dea_csv_columns *table)
+static dea_status read_rows(struct dea_breakdown_fit *fit, const struct dea_csv_columns *table)
 {
   const struct dea_breakdown_file *file = fit->file;
   struct dea_arena *memory = &fit->memory;
@@ -107,7 +107,7 @@ static dea_status read_films(struct dea_breakdown_fit *fit, const char *path)
   if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) > errors) {
     status = dea_fail(ctx, DEA_E_IO, "'%.80s' has errors", path);
   }
-  status = status == DEA_OK ? take_rows(fit, &table) : status;
+  status = status == DEA_OK ? read_rows(fit, &table) : status;
   dea_csv_columns_free(ctx, &table);
   return status;
 }
@@ -129,7 +129,7 @@ static double mean_of(const double *values, size_t count, double *spread)
 
 /* Powers that the films can tell are found; those of the fit file and those that they cannot are
  * kept. */
-static dea_status make_data(struct dea_breakdown_fit *fit)
+static dea_status build_data(struct dea_breakdown_fit *fit)
 {
   static const double differs = 1.03;
   const struct dea_breakdown_file *file = fit->file;
@@ -202,7 +202,7 @@ static dea_status run(void *made, const void *file)
   dea_status status = path != NULL ? read_films(fit, path) : DEA_E_MEMORY;
   dea_free(ctx, path);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, make_data(fit));
+  DEA_TRY(ctx, build_data(fit));
   status = dea_weibull_solve(ctx, &fit->data, &fit->fit);
   status = status == DEA_OK ? check_powers(fit) : status;
   return dea_refuse_argument(ctx, fit->file->tests.location, status);

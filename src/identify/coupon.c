@@ -62,8 +62,8 @@ static void find_share(const struct dea_coupon *s, double time_s, double *share)
   }
 }
 
-dea_status dea_coupon_shares_make(struct dea_arena *arena, const struct dea_coupon *coupon,
-                                  size_t branch_count, struct dea_coupon_shares *out)
+dea_status dea_coupon_shares_build(struct dea_arena *arena, const struct dea_coupon *coupon,
+                                   size_t branch_count, struct dea_coupon_shares *out)
 {
   *out = (struct dea_coupon_shares){
       .share = dea_arena_alloc(arena, branch_count * coupon->rows, sizeof *out->share)};

@@ -34,8 +34,8 @@ struct dea_coupon_shares {
   double *share;                   // [branches x rows]
 };
 /* Room for them, in memory of the arena. */
-dea_status dea_coupon_shares_make(struct dea_arena *arena, const struct dea_coupon *coupon,
-                                  size_t branch_count, struct dea_coupon_shares *out);
+dea_status dea_coupon_shares_build(struct dea_arena *arena, const struct dea_coupon *coupon,
+                                   size_t branch_count, struct dea_coupon_shares *out);
 
 /* Nominal stresses [Pa] at all rows: dW/dl1, of the law and of its branches. shares: of this coupon
  * and so many branches; NULL for a material without. DEA_E_DOMAIN beyond the law's domain,

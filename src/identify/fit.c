@@ -48,7 +48,7 @@ static void widen_times(struct work *w)
 }
 
 /* Whether all fitted rows have uncertainties; none have: the scatter is found. */
-static dea_status look_at_uncertainties(struct work *w)
+static dea_status check_uncertainties(struct work *w)
 {
   struct dea_fit *fit = w->fit;
   size_t known = 0, rows = 0;
@@ -287,7 +287,7 @@ static dea_status try_law(struct work *w, const struct dea_label *name, struct d
       (struct dea_fit_candidate){.held_out = NAN, .held_out_share = NAN, .unstable_from = NAN};
   snprintf(candidate->name, sizeof candidate->name, "%.63s", name->text);
   DEA_TRY(w->ctx,
-          dea_fit_model_make(w->ctx, fit->file, name, fit->series, fit->series_count, model));
+          dea_fit_model_create(w->ctx, fit->file, name, fit->series, fit->series_count, model));
   DEA_TRY(w->ctx, choose_branches(w, model));
   candidate->free_count = dea_fit_model_free(model);
   candidate->branch_count = model->branch_count;
@@ -601,7 +601,7 @@ static dea_status fill_curves(struct work *w)
 static dea_status run(struct work *w, const struct dea_fit_options *options)
 {
   struct dea_fit *fit = w->fit;
-  DEA_TRY(w->ctx, look_at_uncertainties(w));
+  DEA_TRY(w->ctx, check_uncertainties(w));
   DEA_TRY(w->ctx, choose_law(w));
   DEA_TRY(w->ctx, solve_chosen(w));
   DEA_TRY(w->ctx, settle_open(w));

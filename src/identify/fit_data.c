@@ -32,7 +32,7 @@ static struct dea_location line_of(const struct work *w, size_t row)
 
 /* ---- from columns to stretch, stress, time ---- */
 
-static dea_status take_stretch(struct work *w)
+static dea_status read_stretch(struct work *w)
 {
   const double *stretch = w->raw->values[DEA_FIT_STRETCH];
   const double *displacement = w->raw->values[DEA_FIT_DISPLACEMENT];
@@ -62,7 +62,7 @@ static bool has_std_column(const struct work *w)
          (w->raw->values[DEA_FIT_FORCE_STD] != NULL && !isnan(w->test->section_m2.si));
 }
 
-static dea_status take_stress(struct work *w)
+static dea_status read_stress(struct work *w)
 {
   const struct dea_fit_test *test = w->test;
   const double *stress = w->raw->values[DEA_FIT_STRESS], *force = w->raw->values[DEA_FIT_FORCE];
@@ -125,7 +125,7 @@ static dea_status compare_forces(struct work *w)
 }
 
 /* Times from their column, or by the rate along the stretches. A slow test has none. */
-static dea_status take_time(struct work *w)
+static dea_status read_time(struct work *w)
 {
   const struct dea_fit_test *test = w->test;
   const double *time = w->raw->values[DEA_FIT_TIME], rate = test->rate_per_s.si;
@@ -358,14 +358,14 @@ static void choose_mode(struct work *w)
                                                       : (enum dea_coupon_mode)w->test->mode.value;
 }
 
-static dea_status make(struct dea_arena *arena, struct work *w)
+static dea_status build(struct dea_arena *arena, struct work *w)
 {
   struct dea_fit_series *out = w->out;
   const struct dea_fit_test *test = w->test;
-  DEA_TRY(w->ctx, take_stretch(w));
-  DEA_TRY(w->ctx, take_stress(w));
+  DEA_TRY(w->ctx, read_stretch(w));
+  DEA_TRY(w->ctx, read_stress(w));
   DEA_TRY(w->ctx, compare_forces(w));
-  DEA_TRY(w->ctx, take_time(w));
+  DEA_TRY(w->ctx, read_time(w));
   double ramp = 0;
   if (test->kind.value == DEA_FIT_RELAXATION && w->errors == 0) {
     ramp = !isnan(test->ramp_s.si) ? test->ramp_s.si
@@ -400,8 +400,8 @@ static dea_status make(struct dea_arena *arena, struct work *w)
              : dea_fail(w->ctx, DEA_E_IO, "the test '%.60s' cannot be used", test->name.text);
 }
 
-dea_status dea_fit_series_make(struct dea_arena *arena, const struct dea_fit_test *test,
-                               const struct dea_fit_raw *raw, struct dea_fit_series *out)
+dea_status dea_fit_series_build(struct dea_arena *arena, const struct dea_fit_test *test,
+                                const struct dea_fit_raw *raw, struct dea_fit_series *out)
 {
   struct work w = {arena->ctx, test, raw, out, test->use.value != DEA_FIT_PREDICTED, 0};
   *out = (struct dea_fit_series){.test = test, .file = raw->file};
@@ -414,5 +414,5 @@ dea_status dea_fit_series_make(struct dea_arena *arena, const struct dea_fit_tes
   DEA_TRY(arena->ctx, dea_arena_status(arena));
   memcpy(out->line, raw->line, raw->rows * sizeof *out->line);
   choose_mode(&w);
-  return make(arena, &w);
+  return build(arena, &w);
 }

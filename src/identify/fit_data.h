@@ -29,5 +29,5 @@ struct dea_fit_series {
 
 /* Memory of the arena. What is wrong becomes a finding with file and line, DEA_E_IO then; what is
  * only odd (slack rows, repeated rows, a stretch that is never reached) a warning. */
-dea_status dea_fit_series_make(struct dea_arena *arena, const struct dea_fit_test *test,
-                               const struct dea_fit_raw *raw, struct dea_fit_series *out);
+dea_status dea_fit_series_build(struct dea_arena *arena, const struct dea_fit_test *test,
+                                const struct dea_fit_raw *raw, struct dea_fit_series *out);

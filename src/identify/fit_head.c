@@ -106,8 +106,8 @@ void dea_fit_head_destroy(struct dea_context *ctx, void *fit)
   }
 }
 
-void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
-                         dea_status (*run)(void *fit, const void *file), dea_status *status)
+void *dea_fit_frame_create(struct dea_context *ctx, size_t size, const void *file,
+                           dea_status (*run)(void *fit, const void *file), dea_status *status)
 {
   struct dea_arena *fit = dea_alloc(ctx, 1, size);
   if (fit == NULL) {

@@ -102,8 +102,8 @@ dea_status dea_fit_names_check(struct dea_context *ctx, const void *items, size_
 
 /* A fit of films or specimens, of `size` bytes: its struct begins with the arena of all that it
  * finds, and is zero otherwise when `run` fills it. file: handed on. NULL: it failed, *status. */
-void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
-                         dea_status (*run)(void *fit, const void *file), dea_status *status);
+void *dea_fit_frame_create(struct dea_context *ctx, size_t size, const void *file,
+                           dea_status (*run)(void *fit, const void *file), dea_status *status);
 /* NULL is fine. */
 void dea_fit_frame_destroy(struct dea_context *ctx, void *fit);
 /* The functions dea_NAME_fit_run and dea_NAME_fit_destroy of such a struct dea_NAME_fit. */
@@ -112,7 +112,7 @@ void dea_fit_frame_destroy(struct dea_context *ctx, void *fit);
                                   struct dea_##name##_fit **out)                                   \
   {                                                                                                \
     dea_status status;                                                                             \
-    *out = dea_fit_frame_make(ctx, sizeof **out, file, run, &status);                              \
+    *out = dea_fit_frame_create(ctx, sizeof **out, file, run, &status);                            \
     return status;                                                                                 \
   }                                                                                                \
   void dea_##name##_fit_destroy(struct dea_context *ctx, struct dea_##name##_fit *fit)             \

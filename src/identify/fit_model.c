@@ -102,7 +102,7 @@ static dea_status read_number(struct dea_context *ctx, const struct dea_label *l
   return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s': %s", label->text, why);
 }
 
-dea_status dea_fit_param_take(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
+dea_status dea_fit_param_read(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
                               struct dea_fit_param *param)
 {
   double low = NAN, high = NAN;
@@ -137,7 +137,7 @@ dea_status dea_fit_param_take(struct dea_context *ctx, const struct dea_fit_para
   return DEA_OK;
 }
 
-static dea_status take_texts(struct dea_context *ctx, const struct dea_fit_file *file,
+static dea_status read_texts(struct dea_context *ctx, const struct dea_fit_file *file,
                              struct dea_fit_model *model)
 {
   for (size_t k = 0; k < file->parameter_count; k++) {
@@ -151,7 +151,7 @@ static dea_status take_texts(struct dea_context *ctx, const struct dea_fit_file 
     if (j < model->law_count) {
       model->params[j].fixed = false;
       model->params[j].limit = INFINITY; // whoever names it bounds it
-      DEA_TRY(ctx, dea_fit_param_take(ctx, text, &model->params[j]));
+      DEA_TRY(ctx, dea_fit_param_read(ctx, text, &model->params[j]));
       continue;
     }
     const char *nearest = dea_nearest_name(text->name.text, names, j);
@@ -216,9 +216,9 @@ static dea_status unknown_law(struct dea_context *ctx, const struct dea_label *n
                                        nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
 }
 
-dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file *file,
-                              const struct dea_label *name, const struct dea_fit_series *series,
-                              size_t series_count, struct dea_fit_model *out)
+dea_status dea_fit_model_create(struct dea_context *ctx, const struct dea_fit_file *file,
+                                const struct dea_label *name, const struct dea_fit_series *series,
+                                size_t series_count, struct dea_fit_model *out)
 {
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   int terms;
@@ -264,7 +264,7 @@ dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file
     snprintf(out->params[j].name, sizeof out->params[j].name, "%s", param->key);
   }
   bound_locking(out, series, series_count);
-  DEA_TRY(ctx, take_texts(ctx, file, out));
+  DEA_TRY(ctx, read_texts(ctx, file, out));
   return dea_finding_count(ctx, DEA_ERROR) == errors
              ? DEA_OK
              : dea_fail(ctx, DEA_E_DESIGN, "the parameters of '%s' have errors", name->text);
@@ -437,8 +437,8 @@ dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_m
   double *stress = dea_arena_alloc(arena, largest, sizeof *stress);
   struct dea_coupon_shares *shares = dea_arena_alloc(arena, rows->count, sizeof *shares);
   for (size_t s = 0; s < rows->count && shares != NULL; s++) {
-    DEA_TRY(arena->ctx, dea_coupon_shares_make(arena, &rows->series[s].coupon, model->branch_count,
-                                               &shares[s]));
+    DEA_TRY(arena->ctx, dea_coupon_shares_build(arena, &rows->series[s].coupon, model->branch_count,
+                                                &shares[s]));
   }
   DEA_TRY_MEMORY(!arena->failed);
   *w = (struct residuals){model, rows, shares, stress};
@@ -470,7 +470,7 @@ dea_status dea_fit_model_stress(struct dea_arena *arena, const struct dea_fit_mo
   DEA_TRY_MEMORY(!arena->failed);
   *w = (struct stresses){.model = model, .series = series};
   DEA_TRY(arena->ctx,
-          dea_coupon_shares_make(arena, &series->coupon, model->branch_count, &w->shares));
+          dea_coupon_shares_build(arena, &series->coupon, model->branch_count, &w->shares));
   set_bounds(model, memory, out);
   out->user = w;
   return DEA_OK;

@@ -24,7 +24,7 @@ struct dea_fit_param {
 
 /* What a fit file says of a parameter, over what stands in it already (unit, limits, scale). Errors
  * are findings at the text's places. */
-dea_status dea_fit_param_take(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
+dea_status dea_fit_param_read(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
                               struct dea_fit_param *param);
 
 /* The first law_count parameters are the law's, in its order; then modulus and time of each branch;
@@ -48,9 +48,9 @@ struct dea_fit_rows {
 
 /* Model of that name ("yeoh", "ogden-2": the parameters whose keys end in 1 and 2) with what the
  * file says of its parameters. Errors are findings, DEA_E_DESIGN then. */
-dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file *file,
-                              const struct dea_label *name, const struct dea_fit_series *series,
-                              size_t series_count, struct dea_fit_model *out);
+dea_status dea_fit_model_create(struct dea_context *ctx, const struct dea_fit_file *file,
+                                const struct dea_label *name, const struct dea_fit_series *series,
+                                size_t series_count, struct dea_fit_model *out);
 /* Adds branches between two times; times_s: fixed ones, NULL: free. */
 void dea_fit_model_branches(struct dea_fit_model *model, size_t count, double from_s, double to_s,
                             const struct dea_quantity *times);

@@ -68,7 +68,7 @@ static dea_status read_path(struct dea_arena *arena, const struct dea_fit_test *
   for (int c = 0; c < DEA_FIT_COLUMNS; c++) {
     raw.values[c] = columns.values[c];
   }
-  dea_status status = dea_fit_series_make(arena, test, &raw, out);
+  dea_status status = dea_fit_series_build(arena, test, &raw, out);
   dea_csv_columns_free(arena->ctx, &columns);
   return status;
 }

@@ -99,7 +99,7 @@ static void join_parts(struct specimen *s)
 }
 
 /* Memory for all rows in one piece, owned by the caller through clock[0]. */
-static dea_status make_rows(struct dea_context *ctx, struct specimen *s)
+static dea_status build_rows(struct dea_context *ctx, struct specimen *s)
 {
   size_t n = 0;
   for (size_t p = 0; p < s->count; p++) {
@@ -190,7 +190,7 @@ static dea_status read_specimen(struct dea_context *ctx, const struct dea_life_f
     s->count += status == DEA_OK ? 1 : 0;
   }
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  status = status == DEA_OK ? make_rows(ctx, s) : status;
+  status = status == DEA_OK ? build_rows(ctx, s) : status;
   if (status == DEA_OK) {
     join_parts(s);
     status = check_columns(ctx, file, own, s);

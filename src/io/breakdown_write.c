@@ -113,21 +113,21 @@ json_t *dea_breakdown_fit_json(const struct dea_breakdown_fit *fit, const char *
   static const char *const keys[DEA_WEIBULL_PARAMS] = {"at_rest_V_per_m", "weibull_shape",
                                                        "exponent", "thickness_exponent"};
   json_t *root = dea_fit_json_begin(&fit->file->head, command), *list = json_array();
-  dea_json_put_text(root, "tests", fit->tests_file);
-  dea_json_put_text(root, "tests_sha256", fit->sha256);
-  dea_json_put_count(root, "films", fit->rows);
-  dea_json_put_count(root, "broken", fit->fit.broken);
-  dea_json_put(root, "log_likelihood", fit->fit.log_likelihood);
-  dea_json_put(root, "reference_thickness_m", fit->data.thickness0_m);
-  dea_json_put(root, "reference_area_m2", fit->data.area0_m2);
+  dea_json_add_text(root, "tests", fit->tests_file);
+  dea_json_add_text(root, "tests_sha256", fit->sha256);
+  dea_json_add_count(root, "films", fit->rows);
+  dea_json_add_count(root, "broken", fit->fit.broken);
+  dea_json_add(root, "log_likelihood", fit->fit.log_likelihood);
+  dea_json_add(root, "reference_thickness_m", fit->data.thickness0_m);
+  dea_json_add(root, "reference_area_m2", fit->data.area0_m2);
   for (size_t k = 0; k < DEA_WEIBULL_PARAMS; k++) {
     json_t *object = dea_fit_json_weibull(&fit->fit, k, keys[k]);
     json_object_set_new(object, "fixed", json_boolean(fit->data.held[k]));
     json_array_append_new(list, object);
   }
   json_object_set_new(root, "parameters", list);
-  dea_json_put(root, "at_rest_low_95_V_per_m", fit->fit.low_95);
-  dea_json_put(root, "at_rest_high_95_V_per_m", fit->fit.high_95);
+  dea_json_add(root, "at_rest_low_95_V_per_m", fit->fit.low_95);
+  dea_json_add(root, "at_rest_high_95_V_per_m", fit->fit.high_95);
   return root;
 }
 
@@ -162,7 +162,7 @@ dea_status dea_breakdown_fit_folder(struct dea_context *ctx, const struct dea_br
                                     const char *directory, bool force)
 {
   static const char *const figures[] = {"fit"};
-  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, 1, force);
+  return dea_fit_folder_create(ctx, directory, file->head.name.text, figures, 1, force);
 }
 
 dea_status dea_breakdown_fit_write(struct dea_context *ctx, const struct dea_breakdown_fit *fit,

@@ -95,7 +95,8 @@ static dea_status write_vtu(struct dea_context *ctx, const char *directory, cons
 {
   char *folder = dea_path_join(ctx, directory, DEA_FIELD_FOLDER);
   char *path = dea_path_join(ctx, directory, name);
-  dea_status status = folder != NULL && path != NULL ? dea_folder_make(ctx, folder) : DEA_E_MEMORY;
+  dea_status status =
+      folder != NULL && path != NULL ? dea_folder_create(ctx, folder) : DEA_E_MEMORY;
   status = status == DEA_OK ? dea_vtu_write(ctx, mesh, voltage_V, whole, path) : status;
   dea_free(ctx, folder);
   dea_free(ctx, path);
@@ -242,7 +243,7 @@ static dea_status check_voltages(struct dea_context *ctx, const struct dea_desig
 }
 
 /* Moves the surfaces of a model at its first `count` points to another result. */
-static dea_status take_surfaces(struct dea_context *ctx, struct dea_result *from, const char *model,
+static dea_status read_surfaces(struct dea_context *ctx, struct dea_result *from, const char *model,
                                 size_t count, struct dea_result *to)
 {
   for (size_t i = 0; i < from->surface_count; i++) {
@@ -258,7 +259,7 @@ static dea_status take_surfaces(struct dea_context *ctx, struct dea_result *from
 
 /* Copies the profiles of a model at its first `count` points: each has at most one, in their order.
  */
-static dea_status take_profiles(struct dea_context *ctx, const struct dea_result *from,
+static dea_status read_profiles(struct dea_context *ctx, const struct dea_result *from,
                                 const char *model, size_t count, struct dea_result *to)
 {
   for (size_t i = 0; i < from->profile_count && count > 0; i++) {
@@ -274,20 +275,20 @@ static dea_status take_profiles(struct dea_context *ctx, const struct dea_result
 
 /* Moves the tables that the sweep of a model makes as it goes, with the rows of its first `count`
  * points: each has as many. */
-static dea_status take_tables(struct dea_context *ctx, struct dea_result *from,
+static dea_status read_tables(struct dea_context *ctx, struct dea_result *from,
                               const struct dea_curve *sweep, size_t count, struct dea_result *to)
 {
   for (size_t i = 0; i < from->table_count; i++) {
     struct dea_result_table *table = &from->tables[i];
     if (strcmp(table->model, sweep->model) == 0 && strcmp(table->type.study, sweep->kind) == 0) {
       dea_result_table_cut(ctx, table, count * (table->row_count / sweep->count));
-      DEA_TRY(ctx, dea_result_take_table(ctx, to, table));
+      DEA_TRY(ctx, dea_result_adopt_table(ctx, to, table));
     }
   }
   return DEA_OK;
 }
 
-static dea_status take_sweep(struct dea_context *ctx, const char *directory, const char *state,
+static dea_status read_sweep(struct dea_context *ctx, const char *directory, const char *state,
                              struct dea_result *old, const struct dea_curve *sweep,
                              struct dea_result *result)
 {
@@ -307,9 +308,9 @@ static dea_status take_sweep(struct dea_context *ctx, const char *directory, con
   for (size_t i = 0; i < reach.events; i++) { // not where it stopped, after the last point
     DEA_TRY(ctx, dea_curve_add_event(ctx, curve, &sweep->events[i]));
   }
-  DEA_TRY(ctx, take_surfaces(ctx, old, sweep->model, count, result));
-  DEA_TRY(ctx, take_profiles(ctx, old, sweep->model, count, result));
-  return DEA_CHAIN(ctx, take_tables(ctx, old, sweep, count, result));
+  DEA_TRY(ctx, read_surfaces(ctx, old, sweep->model, count, result));
+  DEA_TRY(ctx, read_profiles(ctx, old, sweep->model, count, result));
+  return DEA_CHAIN(ctx, read_tables(ctx, old, sweep, count, result));
 }
 
 dea_status dea_checkpoint_restore(struct dea_context *ctx, const char *directory,
@@ -326,7 +327,7 @@ dea_status dea_checkpoint_restore(struct dea_context *ctx, const char *directory
       status = DEA_E_MEMORY;
     } else if (strcmp(curve->kind, "sweep") == 0 && dea_path_exists(path)) {
       any = true;
-      status = take_sweep(ctx, directory, path, old->result, curve, result);
+      status = read_sweep(ctx, directory, path, old->result, curve, result);
     }
     dea_free(ctx, path);
   }

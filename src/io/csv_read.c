@@ -98,7 +98,7 @@ static double state_of(const struct reader *r, enum state state, size_t row, dou
   return values != NULL ? values[row] : otherwise;
 }
 
-static dea_status take_rows(struct reader *r, struct dea_measurement *m)
+static dea_status read_rows(struct reader *r, struct dea_measurement *m)
 {
   struct dea_arena *memory = &m->curve.memory;
   int *monitors = dea_arena_alloc(&r->memory, r->columns, sizeof *monitors);
@@ -139,7 +139,7 @@ static dea_status read_table(struct reader *r, const char *file, struct dea_meas
   DEA_TRY(r->ctx, dea_csv_columns_read(
                       r->ctx, file, r->wanted, r->columns + STATES,
                       "'V (kV)', 'z centre (um)', 'electrode stretch', 'force (mN)'", &r->table));
-  const dea_status status = take_rows(r, m);
+  const dea_status status = read_rows(r, m);
   dea_csv_columns_free(r->ctx, &r->table);
   return status;
 }

@@ -34,14 +34,14 @@ static json_t *values_json(const struct dea_device_fit *fit)
   for (size_t j = 0; j < fit->param_count; j++) {
     const struct dea_device_param *param = &fit->params[j];
     json_t *object = json_object();
-    dea_json_put_text(object, "name", param->param.name);
-    dea_json_put_text(object, "unit", param->param.unit);
-    dea_json_put_text(object, "film", param->state[0] != '\0' ? param->state + 1 : "");
-    dea_json_put(object, "designed", param->designed);
+    dea_json_add_text(object, "name", param->param.name);
+    dea_json_add_text(object, "unit", param->param.unit);
+    dea_json_add_text(object, "film", param->state[0] != '\0' ? param->state + 1 : "");
+    dea_json_add(object, "designed", param->designed);
     dea_fit_json_value(object, &fit->values[j]);
-    dea_json_put(object, "prior", param->param.prior);
-    dea_json_put(object, "prior_std", param->param.prior_std);
-    dea_json_put_text(object, "prior_of", param->prior_of);
+    dea_json_add(object, "prior", param->param.prior);
+    dea_json_add(object, "prior_std", param->param.prior_std);
+    dea_json_add_text(object, "prior_of", param->prior_of);
     json_array_append_new(array, object);
   }
   return array;
@@ -53,15 +53,15 @@ static json_t *curves_json(const struct dea_device_fit *fit)
   for (size_t c = 0; c < fit->curve_count; c++) {
     const struct dea_device_curve *curve = &fit->curves[c];
     json_t *object = json_object();
-    dea_json_put_text(object, "name", curve->text->name.text);
-    dea_json_put_text(object, "quantity", curve->quantity->key);
-    dea_json_put_text(object, "unit", curve->quantity->si_unit);
-    dea_json_put_text(object, "use", dea_fit_use_names[curve->text->use.value]);
+    dea_json_add_text(object, "name", curve->text->name.text);
+    dea_json_add_text(object, "quantity", curve->quantity->key);
+    dea_json_add_text(object, "unit", curve->quantity->si_unit);
+    dea_json_add_text(object, "use", dea_fit_use_names[curve->text->use.value]);
     dea_fit_json_rows(object, curve->file, curve->sha256, curve->rows, curve->slack, curve->lag,
                       curve->effective);
-    dea_json_put(object, "slack_from_V", curve->slack_from_V);
-    dea_json_put(object, "rms", curve->rms);
-    dea_json_put(object, "largest_relative", curve->largest);
+    dea_json_add(object, "slack_from_V", curve->slack_from_V);
+    dea_json_add(object, "rms", curve->rms);
+    dea_json_add(object, "largest_relative", curve->largest);
     json_array_append_new(array, object);
   }
   return array;
@@ -73,11 +73,11 @@ static json_t *derived_json(const struct dea_device_fit *fit)
   for (size_t k = 0; k < fit->derived_count; k++) {
     const struct dea_device_derived *derived = &fit->derived[k];
     json_t *object = json_object();
-    dea_json_put_text(object, "quantity", dea_point_columns[derived->column].key);
-    dea_json_put(object, "voltage_V", derived->voltage_V);
-    dea_json_put(object, "value", derived->value);
-    dea_json_put(object, "standard_uncertainty", derived->std);
-    dea_json_put(object, "designed", derived->designed);
+    dea_json_add_text(object, "quantity", dea_point_columns[derived->column].key);
+    dea_json_add(object, "voltage_V", derived->voltage_V);
+    dea_json_add(object, "value", derived->value);
+    dea_json_add(object, "standard_uncertainty", derived->std);
+    dea_json_add(object, "designed", derived->designed);
     json_array_append_new(array, object);
   }
   return array;
@@ -91,10 +91,10 @@ static json_t *advice_json(const struct dea_device_fit *fit)
   for (size_t k = 0; k < fit->pair_count; k++) {
     const struct dea_device_pair *pair = &fit->pairs[k];
     json_t *row = json_object();
-    dea_json_put_text(row, "first", fit->params[pair->first].param.name);
-    dea_json_put_text(row, "second", fit->params[pair->second].param.name);
-    dea_json_put(row, "correlation", pair->correlation);
-    dea_json_put_text(row, "would_tell", pair->next);
+    dea_json_add_text(row, "first", fit->params[pair->first].param.name);
+    dea_json_add_text(row, "second", fit->params[pair->second].param.name);
+    dea_json_add(row, "correlation", pair->correlation);
+    dea_json_add_text(row, "would_tell", pair->next);
     json_array_append_new(pairs, row);
   }
   json_object_set_new(object, "not_told_apart", pairs);
@@ -104,14 +104,14 @@ static json_t *advice_json(const struct dea_device_fit *fit)
 json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *command)
 {
   json_t *root = dea_fit_json_begin(&fit->file->head, command);
-  dea_json_put_text(root, "name", fit->file->head.name.text);
-  dea_json_put_text(root, "design", fit->design_file);
-  dea_json_put_text(root, "design_sha256", fit->design_sha256);
-  dea_json_put_text(root, "model", fit->model);
+  dea_json_add_text(root, "name", fit->file->head.name.text);
+  dea_json_add_text(root, "design", fit->design_file);
+  dea_json_add_text(root, "design_sha256", fit->design_sha256);
+  dea_json_add_text(root, "model", fit->model);
   json_object_set_new(root, "parameters", values_json(fit));
   dea_fit_json_statistics(root, fit->scale_known, "scatter", fit->scatter, &fit->least_squares,
                           &fit->statistics);
-  dea_json_put_count(root, "evaluations", fit->evaluations);
+  dea_json_add_count(root, "evaluations", fit->evaluations);
   json_object_set_new(root, "curves", curves_json(fit));
   json_object_set_new(root, "slack_settled", json_boolean(fit->settled));
   json_object_set_new(root, "follows", derived_json(fit));
@@ -135,7 +135,7 @@ dea_status dea_device_fit_folder(struct dea_context *ctx, const struct dea_devic
   }
   dea_status status = dea_arena_status(&memory);
   status = status == DEA_OK
-               ? dea_fit_folder_make(ctx, directory, file->head.name.text, figures, count, force)
+               ? dea_fit_folder_create(ctx, directory, file->head.name.text, figures, count, force)
                : status;
   dea_arena_free(&memory);
   return status;

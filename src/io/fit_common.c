@@ -13,19 +13,19 @@ json_t *dea_fit_json_begin(const struct dea_fit_head *head, const char *command)
 {
   json_t *root = json_object();
   json_object_set_new(root, "schema", json_integer(DEA_FIT_JSON_SCHEMA));
-  dea_json_put_text(root, "program", "dea " DEA_VERSION);
-  dea_json_put_text(root, "command", command);
-  dea_json_put_text(root, "file", head->file);
-  dea_json_put_text(root, "sha256", head->sha256);
+  dea_json_add_text(root, "program", "dea " DEA_VERSION);
+  dea_json_add_text(root, "command", command);
+  dea_json_add_text(root, "file", head->file);
+  dea_json_add_text(root, "sha256", head->sha256);
   return root;
 }
 
 void dea_fit_json_value(json_t *object, const struct dea_fit_value *value)
 {
-  dea_json_put(object, "value", value->value);
-  dea_json_put(object, "standard_uncertainty", value->std);
-  dea_json_put(object, "interval_low", value->low);
-  dea_json_put(object, "interval_high", value->high);
+  dea_json_add(object, "value", value->value);
+  dea_json_add(object, "standard_uncertainty", value->std);
+  dea_json_add(object, "interval_low", value->low);
+  dea_json_add(object, "interval_high", value->high);
   json_object_set_new(object, "fixed", json_boolean(value->fixed));
   json_object_set_new(object, "at_bound", json_boolean(value->at_bound));
   json_object_set_new(object, "determined", json_boolean(!isinf(value->std)));
@@ -35,11 +35,11 @@ void dea_fit_json_value(json_t *object, const struct dea_fit_value *value)
 json_t *dea_fit_json_weibull(const struct dea_weibull_fit *fit, size_t param, const char *name)
 {
   json_t *object = json_object();
-  dea_json_put_text(object, "name", name);
-  dea_json_put(object, "value", fit->value[param]);
-  dea_json_put(object, "standard_uncertainty", fit->std[param]);
-  dea_json_put(object, "interval_low", fit->low[param]);
-  dea_json_put(object, "interval_high", fit->high[param]);
+  dea_json_add_text(object, "name", name);
+  dea_json_add(object, "value", fit->value[param]);
+  dea_json_add(object, "standard_uncertainty", fit->std[param]);
+  dea_json_add(object, "interval_low", fit->low[param]);
+  dea_json_add(object, "interval_high", fit->high[param]);
   return object;
 }
 
@@ -58,24 +58,24 @@ void dea_fit_json_statistics(json_t *root, bool known, const char *scatter_key, 
   }
   json_object_set_new(root, "correlations", rows);
   json_object_set_new(root, "uncertainty_given", json_boolean(known));
-  dea_json_put(root, scatter_key, known ? NAN : scatter);
-  dea_json_put(root, "chi_square", known ? least_squares->chi2 : NAN);
-  dea_json_put(root, "reduced_chi_square", known ? statistics->reduced_chi2 : NAN);
+  dea_json_add(root, scatter_key, known ? NAN : scatter);
+  dea_json_add(root, "chi_square", known ? least_squares->chi2 : NAN);
+  dea_json_add(root, "reduced_chi_square", known ? statistics->reduced_chi2 : NAN);
   json_object_set_new(root, "widened", json_boolean(statistics->widened));
-  dea_json_put_count(root, "rows", least_squares->rows);
-  dea_json_put(root, "effective_rows", statistics->effective_rows);
-  dea_json_put(root, "condition", statistics->condition);
+  dea_json_add_count(root, "rows", least_squares->rows);
+  dea_json_add(root, "effective_rows", statistics->effective_rows);
+  dea_json_add(root, "condition", statistics->condition);
 }
 
 void dea_fit_json_rows(json_t *object, const char *file, const char *sha256, size_t rows,
                        size_t slack_rows, double lag, double effective)
 {
-  dea_json_put_text(object, "file", file);
-  dea_json_put_text(object, "sha256", sha256);
-  dea_json_put_count(object, "rows", rows);
-  dea_json_put_count(object, "slack_rows", slack_rows);
-  dea_json_put(object, "neighbour_correlation", lag);
-  dea_json_put(object, "effective_rows", effective);
+  dea_json_add_text(object, "file", file);
+  dea_json_add_text(object, "sha256", sha256);
+  dea_json_add_count(object, "rows", rows);
+  dea_json_add_count(object, "slack_rows", slack_rows);
+  dea_json_add(object, "neighbour_correlation", lag);
+  dea_json_add(object, "effective_rows", effective);
 }
 
 void dea_fit_json_advice(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], size_t weak_count,
@@ -88,8 +88,8 @@ void dea_fit_json_advice(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], s
   }
   for (size_t k = 0; k < next_count; k++) {
     json_t *row = json_object();
-    dea_json_put_text(row, word, next[k].what);
-    dea_json_put(row, "error_bars_times", next[k].shrink);
+    dea_json_add_text(row, word, next[k].what);
+    dea_json_add(row, "error_bars_times", next[k].shrink);
     json_array_append_new(measurements, row);
   }
   json_object_set_new(object, "weak", combinations);
@@ -98,18 +98,18 @@ void dea_fit_json_advice(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], s
 
 // The folder --------------------------------------------------------------------------------------
 
-dea_status dea_fit_folder_make(struct dea_context *ctx, const char *directory, const char *name,
-                               const char *const figures[], size_t figure_count, bool force)
+dea_status dea_fit_folder_create(struct dea_context *ctx, const char *directory, const char *name,
+                                 const char *const figures[], size_t figure_count, bool force)
 {
   char file[DEA_NAME_SIZE + 8];
   snprintf(file, sizeof file, "%.63s.yaml", name);
-  DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, file, force));
-  DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, "fit.json", force));
-  DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, "fit.csv", force));
+  DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, directory, file, force));
+  DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, directory, "fit.json", force));
+  DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, directory, "fit.csv", force));
   for (size_t k = 0; k < figure_count; k++) {
-    DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, figures[k], force));
+    DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, directory, figures[k], force));
   }
-  return dea_folder_make(ctx, directory);
+  return dea_folder_create(ctx, directory);
 }
 
 dea_status dea_fit_folder_write(struct dea_context *ctx, const char *directory, const char *name,

@@ -29,8 +29,8 @@ void dea_fit_json_advice(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], s
 
 /* Makes the folder and takes fit.json, fit.csv, NAME.yaml and the figures of an earlier fit out of
  * it; DEA_E_IO when it has one and force is not set. */
-dea_status dea_fit_folder_make(struct dea_context *ctx, const char *directory, const char *name,
-                               const char *const figures[], size_t figure_count, bool force);
+dea_status dea_fit_folder_create(struct dea_context *ctx, const char *directory, const char *name,
+                                 const char *const figures[], size_t figure_count, bool force);
 /* Writes NAME.yaml (yaml NULL: none), fit.csv and fit.json; root: taken. */
 dea_status dea_fit_folder_write(struct dea_context *ctx, const char *directory, const char *name,
                                 const struct dea_text *yaml, const struct dea_text *csv,

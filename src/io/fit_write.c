@@ -303,8 +303,8 @@ static json_t *values_json(const struct dea_fit *fit)
   json_t *array = json_array();
   for (size_t j = 0; j < fit->model.count; j++) {
     json_t *object = json_object();
-    dea_json_put_text(object, "name", fit->model.params[j].name);
-    dea_json_put_text(object, "unit", fit->model.params[j].unit);
+    dea_json_add_text(object, "name", fit->model.params[j].name);
+    dea_json_add_text(object, "unit", fit->model.params[j].unit);
     dea_fit_json_value(object, &fit->values[j]);
     json_array_append_new(array, object);
   }
@@ -317,18 +317,18 @@ static json_t *laws_json(const struct dea_fit *fit)
   for (size_t i = 0; i < fit->candidate_count; i++) {
     const struct dea_fit_candidate *candidate = &fit->candidates[i];
     json_t *object = json_object();
-    dea_json_put_text(object, "law", candidate->name);
+    dea_json_add_text(object, "law", candidate->name);
     json_object_set_new(object, "failed", json_boolean(candidate->failed));
     if (candidate->failed) {
-      dea_json_put_text(object, "why", candidate->why);
+      dea_json_add_text(object, "why", candidate->why);
     } else {
-      dea_json_put_count(object, "free_parameters", candidate->free_count);
-      dea_json_put_count(object, "branches", candidate->branch_count);
-      dea_json_put(object, "chi_square", candidate->chi2);
-      dea_json_put(object, "aicc", candidate->aicc);
-      dea_json_put(object, "held_out", candidate->held_out);
-      dea_json_put(object, "held_out_share", candidate->held_out_share);
-      dea_json_put(object, "unstable_from", candidate->unstable_from);
+      dea_json_add_count(object, "free_parameters", candidate->free_count);
+      dea_json_add_count(object, "branches", candidate->branch_count);
+      dea_json_add(object, "chi_square", candidate->chi2);
+      dea_json_add(object, "aicc", candidate->aicc);
+      dea_json_add(object, "held_out", candidate->held_out);
+      dea_json_add(object, "held_out_share", candidate->held_out_share);
+      dea_json_add(object, "unstable_from", candidate->unstable_from);
     }
     json_array_append_new(array, object);
   }
@@ -341,14 +341,14 @@ static json_t *tests_json(const struct dea_fit *fit)
   for (size_t s = 0; s < fit->series_count; s++) {
     const struct dea_fit_curve *curve = &fit->curves[s];
     json_t *object = json_object();
-    dea_json_put_text(object, "name", curve->series->test->name.text);
-    dea_json_put_text(object, "use", dea_fit_use_names[curve->series->test->use.value]);
-    dea_json_put_text(object, "kind", dea_fit_kind_names[curve->series->test->kind.value]);
+    dea_json_add_text(object, "name", curve->series->test->name.text);
+    dea_json_add_text(object, "use", dea_fit_use_names[curve->series->test->use.value]);
+    dea_json_add_text(object, "kind", dea_fit_kind_names[curve->series->test->kind.value]);
     dea_fit_json_rows(object, curve->series->file, curve->series->sha256, curve->series->rows,
                       curve->series->slack, curve->lag, curve->effective);
-    dea_json_put_count(object, "repeated_rows", curve->series->repeated);
-    dea_json_put(object, "rms_Pa", curve->rms_Pa);
-    dea_json_put(object, "largest_relative", curve->largest);
+    dea_json_add_count(object, "repeated_rows", curve->series->repeated);
+    dea_json_add(object, "rms_Pa", curve->rms_Pa);
+    dea_json_add(object, "largest_relative", curve->largest);
     json_array_append_new(array, object);
   }
   return array;
@@ -361,19 +361,19 @@ static json_t *advice_json(const struct dea_fit *fit)
                       fit->next_count);
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     json_t *row = json_object();
-    dea_json_put_text(row, "mode", dea_coupon_mode_names[mode]);
+    dea_json_add_text(row, "mode", dea_coupon_mode_names[mode]);
     json_object_set_new(row, "measured", json_boolean(fit->stability[mode].measured));
-    dea_json_put(row, "to_stretch", fit->stability[mode].to);
-    dea_json_put(row, "unstable_from", fit->stability[mode].unstable_from);
+    dea_json_add(row, "to_stretch", fit->stability[mode].to);
+    dea_json_add(row, "unstable_from", fit->stability[mode].unstable_from);
     json_array_append_new(stability, row);
   }
   json_object_set_new(object, "stability", stability);
   for (size_t k = 0; k < fit->spread_count; k++) {
     json_t *row = json_object();
-    dea_json_put_text(row, "mode", dea_coupon_mode_names[fit->spreads[k].mode]);
-    dea_json_put(row, "stretch", fit->spreads[k].stretch);
-    dea_json_put_text(row, "other_law", fit->spreads[k].other);
-    dea_json_put(row, "differs_by_share", fit->spreads[k].share);
+    dea_json_add_text(row, "mode", dea_coupon_mode_names[fit->spreads[k].mode]);
+    dea_json_add(row, "stretch", fit->spreads[k].stretch);
+    dea_json_add_text(row, "other_law", fit->spreads[k].other);
+    dea_json_add(row, "differs_by_share", fit->spreads[k].share);
     json_array_append_new(spreads, row);
   }
   json_object_set_new(object, "not_measured", spreads);
@@ -383,8 +383,8 @@ static json_t *advice_json(const struct dea_fit *fit)
 json_t *dea_fit_json(const struct dea_fit *fit, const char *command)
 {
   json_t *root = dea_fit_json_begin(&fit->file->head, command);
-  dea_json_put_text(root, "material", fit->file->head.name.text);
-  dea_json_put_text(root, "law", fit->model.law->name);
+  dea_json_add_text(root, "material", fit->file->head.name.text);
+  dea_json_add_text(root, "law", fit->model.law->name);
   json_object_set_new(root, "laws", laws_json(fit));
   json_object_set_new(root, "parameters", values_json(fit));
   dea_fit_json_statistics(root, fit->scale_known, "scatter_Pa", fit->scatter_Pa,
@@ -400,7 +400,7 @@ dea_status dea_fit_folder(struct dea_context *ctx, const struct dea_fit_file *fi
                           const char *directory, bool force)
 {
   static const char *const figures[] = {"fit", "fit_time"};
-  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, 2, force);
+  return dea_fit_folder_create(ctx, directory, file->head.name.text, figures, 2, force);
 }
 
 static dea_status write_texts(struct dea_context *ctx, const struct dea_fit *fit,

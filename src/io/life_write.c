@@ -36,13 +36,13 @@ static json_t *specimens_json(const struct dea_life_fit *fit)
   for (size_t i = 0; i < fit->rows; i++) {
     const struct dea_life *life = &fit->lives[i];
     json_t *object = json_object();
-    dea_json_put_text(object, "name", fit->file->specimens[i].name.text);
-    dea_json_put_text(object, "end", dea_life_end_names[life->end]);
+    dea_json_add_text(object, "name", fit->file->specimens[i].name.text);
+    dea_json_add_text(object, "end", dea_life_end_names[life->end]);
     for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
-      dea_json_put(object, keys[k], life->clock[k]);
+      dea_json_add(object, keys[k], life->clock[k]);
     }
-    dea_json_put(object, "first_stroke", life->first_stroke);
-    dea_json_put(object, "last_stroke", life->last_stroke);
+    dea_json_add(object, "first_stroke", life->first_stroke);
+    dea_json_add(object, "last_stroke", life->last_stroke);
     json_array_append_new(list, object);
   }
   return list;
@@ -53,18 +53,18 @@ json_t *dea_life_fit_json(const struct dea_life_fit *fit, const char *command)
   static const char *const keys[2] = {"scale", "shape"};
   const struct dea_life_file *file = fit->file;
   json_t *root = dea_fit_json_begin(&file->head, command), *list = json_array();
-  dea_json_put_text(root, "clock", dea_life_clock_names[file->clock.value]);
-  dea_json_put_count(root, "specimens", fit->rows);
-  dea_json_put_count(root, "failed", fit->failed);
+  dea_json_add_text(root, "clock", dea_life_clock_names[file->clock.value]);
+  dea_json_add_count(root, "specimens", fit->rows);
+  dea_json_add_count(root, "failed", fit->failed);
   json_object_set_new(root, "lives", specimens_json(fit));
   for (size_t k = 0; k < 2 && fit->has_law; k++) {
     json_array_append_new(list, dea_fit_json_weibull(&fit->fit, k, keys[k]));
   }
   json_object_set_new(root, "parameters", list);
   if (fit->has_law) {
-    dea_json_put(root, "log_likelihood", fit->fit.log_likelihood);
-    dea_json_put(root, "scale_low_95", fit->fit.low_95);
-    dea_json_put(root, "scale_high_95", fit->fit.high_95);
+    dea_json_add(root, "log_likelihood", fit->fit.log_likelihood);
+    dea_json_add(root, "scale_low_95", fit->fit.low_95);
+    dea_json_add(root, "scale_high_95", fit->fit.high_95);
   }
   return root;
 }
@@ -75,7 +75,7 @@ dea_status dea_life_fit_folder(struct dea_context *ctx, const struct dea_life_fi
                                const char *directory, bool force)
 {
   static const char *const figures[] = {"fit"};
-  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, 1, force);
+  return dea_fit_folder_create(ctx, directory, file->head.name.text, figures, 1, force);
 }
 
 static dea_status draw(struct dea_context *ctx, const struct dea_life_fit *fit,

@@ -52,8 +52,8 @@ static void get_columns(struct h5 *h, hid_t file)
 }
 
 /* Room at points for the columns of monitors that a group has. */
-static void make_monitors(struct h5 *h, hid_t group, struct dea_arena *memory,
-                          struct dea_load_point *points, size_t count)
+static void build_monitors(struct h5 *h, hid_t group, struct dea_arena *memory,
+                           struct dea_load_point *points, size_t count)
 {
   const int all = dea_column_count(h->ctx);
   int *columns = dea_arena_alloc(memory, (size_t)all, sizeof *columns);
@@ -90,7 +90,7 @@ static void get_points(struct h5 *h, hid_t group, struct dea_arena *memory,
     (*points)[i] = dea_load_point_empty();
   }
   if (h->status == DEA_OK) {
-    make_monitors(h, group, memory, *points, n);
+    build_monitors(h, group, memory, *points, n);
   }
   for (int c = 0; c < dea_column_count(h->ctx); c++) {
     const char *key = dea_column_at(h->ctx, c)->key;

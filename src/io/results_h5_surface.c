@@ -5,59 +5,59 @@
 
 enum { COUNT_MAX = 100000000, COMPONENTS_MAX = 9 };
 
-static void put_blocks(struct h5 *h, hid_t group, const struct dea_field_mesh *mesh)
+static void write_blocks(struct h5 *h, hid_t group, const struct dea_field_mesh *mesh)
 {
-  hid_t blocks = dea_h5_group_make(h, group, "blocks");
+  hid_t blocks = dea_h5_group_create(h, group, "blocks");
   for (size_t b = 0; b < mesh->block_count; b++) {
     const struct dea_mesh_block *block = &mesh->blocks[b];
     char name[24];
     snprintf(name, sizeof name, "%02zu", b);
-    hid_t at = dea_h5_group_make(h, blocks, name);
-    dea_h5_put_int(h, at, "order", block->order);
-    dea_h5_put_int(h, at, "order_z", block->order_z);
-    dea_h5_put_int(h, at, "count", (long long)block->count);
-    dea_h5_put_array(h, at, "nodes", H5T_NATIVE_INT, H5T_STD_I32LE,
-                     block->count * (size_t)dea_mesh_block_nodes(block), block->nodes, "1",
-                     "points of each element, first local axis fastest");
+    hid_t at = dea_h5_group_create(h, blocks, name);
+    dea_h5_write_int(h, at, "order", block->order);
+    dea_h5_write_int(h, at, "order_z", block->order_z);
+    dea_h5_write_int(h, at, "count", (long long)block->count);
+    dea_h5_write_array(h, at, "nodes", H5T_NATIVE_INT, H5T_STD_I32LE,
+                       block->count * (size_t)dea_mesh_block_nodes(block), block->nodes, "1",
+                       "points of each element, first local axis fastest");
     dea_h5_close(at);
   }
   dea_h5_close(blocks);
 }
 
-static void put_field(struct h5 *h, hid_t fields, const struct dea_field_mesh *mesh,
-                      const struct dea_mesh_field *field)
+static void write_field(struct h5 *h, hid_t fields, const struct dea_field_mesh *mesh,
+                        const struct dea_mesh_field *field)
 {
-  dea_h5_put_array(h, fields, field->name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
-                   dea_mesh_field_count(mesh, field) * (size_t)field->components, field->values,
-                   field->unit, field->meaning);
+  dea_h5_write_array(h, fields, field->name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
+                     dea_mesh_field_count(mesh, field) * (size_t)field->components, field->values,
+                     field->unit, field->meaning);
   hid_t set = dea_h5_array_open(h, fields, field->name);
-  dea_h5_put_int(h, set, "components", field->components);
-  dea_h5_put_int(h, set, "kind", field->kind);
-  dea_h5_put_int(h, set, "of_cells", field->of_cells);
+  dea_h5_write_int(h, set, "components", field->components);
+  dea_h5_write_int(h, set, "kind", field->kind);
+  dea_h5_write_int(h, set, "of_cells", field->of_cells);
   dea_h5_close(set);
 }
 
-void dea_results_h5_put_surface(struct h5 *h, hid_t group, const struct dea_surface_record *record,
-                                hid_t same)
+void dea_results_h5_write_surface(struct h5 *h, hid_t group,
+                                  const struct dea_surface_record *record, hid_t same)
 {
   const struct dea_field_mesh *mesh = record->mesh;
-  dea_h5_put_int(h, group, "point", (long long)record->point);
-  dea_h5_put_real(h, group, "voltage_V", record->voltage_V);
-  dea_h5_put_int(h, group, "points", (long long)mesh->point_count);
-  dea_h5_put_int(h, group, "fold", mesh->fold);
-  dea_h5_put_real(h, group, "symmetry_angle", mesh->symmetry_angle);
-  dea_h5_put_int(h, group, "fibres", mesh->fibres);
+  dea_h5_write_int(h, group, "point", (long long)record->point);
+  dea_h5_write_real(h, group, "voltage_V", record->voltage_V);
+  dea_h5_write_int(h, group, "points", (long long)mesh->point_count);
+  dea_h5_write_int(h, group, "fold", mesh->fold);
+  dea_h5_write_real(h, group, "symmetry_angle", mesh->symmetry_angle);
+  dea_h5_write_int(h, group, "fibres", mesh->fibres);
   if (same >= 0) {
     dea_h5_link(h, same, "X_m", group);
     dea_h5_link(h, same, "blocks", group);
   } else {
-    dea_h5_put_array(h, group, "X_m", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, 3 * mesh->point_count,
-                     mesh->X, "m", "x y z of each point in the stretched flat film");
-    put_blocks(h, group, mesh);
+    dea_h5_write_array(h, group, "X_m", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, 3 * mesh->point_count,
+                       mesh->X, "m", "x y z of each point in the stretched flat film");
+    write_blocks(h, group, mesh);
   }
-  hid_t fields = dea_h5_group_make(h, group, "fields");
+  hid_t fields = dea_h5_group_create(h, group, "fields");
   for (size_t i = 0; i < mesh->field_count; i++) {
-    put_field(h, fields, mesh, &mesh->fields[i]);
+    write_field(h, fields, mesh, &mesh->fields[i]);
   }
   dea_h5_close(fields);
 }

@@ -13,8 +13,8 @@ static const char *or_empty(const char *text)
 
 // Writing ----------------------------------------------------------------------------------------
 
-static void put_texts(struct h5 *h, hid_t group, const struct dea_result_table *table,
-                      size_t column)
+static void write_texts(struct h5 *h, hid_t group, const struct dea_result_table *table,
+                        size_t column)
 {
   const struct dea_result_column *c = &table->type.columns[column];
   size_t size = 1;
@@ -33,14 +33,14 @@ static void put_texts(struct h5 *h, hid_t group, const struct dea_result_table *
   }
   hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, size);
-  dea_h5_put_array(h, group, c->key, type, type, table->row_count, texts, "1",
-                   or_empty(c->meaning));
+  dea_h5_write_array(h, group, c->key, type, type, table->row_count, texts, "1",
+                     or_empty(c->meaning));
   dea_h5_close(type);
   dea_free(h->ctx, texts);
 }
 
-static void put_numbers(struct h5 *h, hid_t group, const struct dea_result_table *table,
-                        size_t column)
+static void write_numbers(struct h5 *h, hid_t group, const struct dea_result_table *table,
+                          size_t column)
 {
   const struct dea_result_column *c = &table->type.columns[column];
   size_t width = dea_result_table_values(table, column);
@@ -54,8 +54,8 @@ static void put_numbers(struct h5 *h, hid_t group, const struct dea_result_table
       values[row * width + k] = dea_result_table_cell(table, row, column)[k].number;
     }
   }
-  dea_h5_put_array(h, group, c->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, table->row_count * width,
-                   values, c->si_unit != NULL ? c->si_unit : "1", or_empty(c->meaning));
+  dea_h5_write_array(h, group, c->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, table->row_count * width,
+                     values, c->si_unit != NULL ? c->si_unit : "1", or_empty(c->meaning));
   dea_free(h->ctx, values);
 }
 
@@ -68,57 +68,57 @@ static void name_column(double number, char out[COLUMN_NAME_SIZE])
 }
 
 /* Keys of the columns of monitors that rows are of. */
-static void put_keys(struct h5 *h, hid_t set, const struct dea_result_table *table, size_t column)
+static void write_keys(struct h5 *h, hid_t set, const struct dea_result_table *table, size_t column)
 {
   char name[COLUMN_NAME_SIZE];
   for (size_t row = 0; row < table->row_count; row++) {
     const double number = dea_result_table_cell(table, row, column)->number;
     name_column(number, name);
     if (number >= DEA_LOAD_POINT_COLUMNS && H5Aexists(set, name) <= 0) {
-      dea_h5_put_text(h, set, name, dea_column_at(h->ctx, (int)number)->key);
+      dea_h5_write_text(h, set, name, dea_column_at(h->ctx, (int)number)->key);
     }
   }
 }
 
-static void put_column(struct h5 *h, hid_t group, const struct dea_result_table *table,
-                       size_t column)
+static void write_column(struct h5 *h, hid_t group, const struct dea_result_table *table,
+                         size_t column)
 {
   const struct dea_result_column *c = &table->type.columns[column];
   if (c->kind == DEA_CELL_TEXT) {
-    put_texts(h, group, table, column);
+    write_texts(h, group, table, column);
   } else {
-    put_numbers(h, group, table, column);
+    write_numbers(h, group, table, column);
   }
   hid_t set = dea_h5_array_open(h, group, c->key);
-  dea_h5_put_int(h, set, "column", (long long)column);
-  dea_h5_put_int(h, set, "kind", c->kind);
-  dea_h5_put_int(h, set, "list", c->list);
-  dea_h5_put_int(h, set, "null", c->null);
-  dea_h5_put_int(h, set, "hidden", c->hidden);
-  dea_h5_put_text(h, set, "title", or_empty(c->title));
-  dea_h5_put_text(h, set, "display_unit", c->display_unit != NULL ? c->display_unit : "1");
-  dea_h5_put_real(h, set, "display_factor", c->factor > 0 ? c->factor : 1);
+  dea_h5_write_int(h, set, "column", (long long)column);
+  dea_h5_write_int(h, set, "kind", c->kind);
+  dea_h5_write_int(h, set, "list", c->list);
+  dea_h5_write_int(h, set, "null", c->null);
+  dea_h5_write_int(h, set, "hidden", c->hidden);
+  dea_h5_write_text(h, set, "title", or_empty(c->title));
+  dea_h5_write_text(h, set, "display_unit", c->display_unit != NULL ? c->display_unit : "1");
+  dea_h5_write_real(h, set, "display_factor", c->factor > 0 ? c->factor : 1);
   if (c->kind == DEA_CELL_QUANTITY) {
-    put_keys(h, set, table, column);
+    write_keys(h, set, table, column);
   }
   dea_h5_close(set);
 }
 
-void dea_results_h5_put_table(struct h5 *h, hid_t group, const struct dea_result_table *table)
+void dea_results_h5_write_table(struct h5 *h, hid_t group, const struct dea_result_table *table)
 {
   const struct dea_result_table_type *type = &table->type;
-  dea_h5_put_text(h, group, "study", type->study);
-  dea_h5_put_text(h, group, "name", type->name);
-  dea_h5_put_text(h, group, "key", or_empty(type->key));
-  dea_h5_put_text(h, group, "title", or_empty(type->title));
-  dea_h5_put_int(h, group, "where", type->where);
-  dea_h5_put_int(h, group, "one_row", type->one_row);
-  dea_h5_put_text(h, group, "quantity",
-                  table->quantity >= 0 ? dea_point_columns[table->quantity].key : "");
-  dea_h5_put_int(h, group, "width", (long long)table->width);
-  dea_h5_put_int(h, group, "count", (long long)table->row_count);
+  dea_h5_write_text(h, group, "study", type->study);
+  dea_h5_write_text(h, group, "name", type->name);
+  dea_h5_write_text(h, group, "key", or_empty(type->key));
+  dea_h5_write_text(h, group, "title", or_empty(type->title));
+  dea_h5_write_int(h, group, "where", type->where);
+  dea_h5_write_int(h, group, "one_row", type->one_row);
+  dea_h5_write_text(h, group, "quantity",
+                    table->quantity >= 0 ? dea_point_columns[table->quantity].key : "");
+  dea_h5_write_int(h, group, "width", (long long)table->width);
+  dea_h5_write_int(h, group, "count", (long long)table->row_count);
   for (size_t c = 0; c < type->column_count && table->row_count > 0; c++) {
-    put_column(h, group, table, c);
+    write_column(h, group, table, c);
   }
 }
 

@@ -213,7 +213,7 @@ static void find_errors(struct dea_emulator *e, double *scratch)
   }
 }
 
-dea_status dea_emulator_make(struct dea_context *ctx, struct dea_emulator *io)
+dea_status dea_emulator_build(struct dea_context *ctx, struct dea_emulator *io)
 {
   const size_t room = io->case_count + 2 * io->voltage_count;
   io->first = dea_alloc(ctx, io->quantity_count + 1, sizeof *io->first);

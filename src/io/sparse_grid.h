@@ -38,7 +38,7 @@ struct dea_emulator {
 
 /* Finds the last three: the error of a case is its difference to what the grid of the level below
  * and every second voltage say. Of a quantity with fewer than two voltages first = end. */
-dea_status dea_emulator_make(struct dea_context *ctx, struct dea_emulator *io);
+dea_status dea_emulator_build(struct dea_context *ctx, struct dea_emulator *io);
 void dea_emulator_free(struct dea_context *ctx, struct dea_emulator *emulator);
 /* At shares of the keys' ranges and voltages [count]: values and errors [count][quantities], sums
  * of those of cases by their weights, at the worse of the voltages beside; NAN where there are

@@ -12,24 +12,24 @@ dea_status dea_state_file_write(struct dea_context *ctx, const char *model,
 {
   struct h5 h;
   dea_h5_begin(&h, ctx, path);
-  hid_t file = dea_h5_file_make(&h);
-  dea_h5_put_text(&h, file, "format", "libdea state");
-  dea_h5_put_int(&h, file, "schema", DEA_STATE_SCHEMA);
-  dea_h5_put_text(&h, file, "version", DEA_VERSION);
-  dea_h5_put_text(&h, file, "model", model);
-  dea_h5_put_int(&h, file, "points", (long long)reach.points);
-  dea_h5_put_int(&h, file, "events", (long long)reach.events);
-  hid_t marks = dea_h5_group_make(&h, file, "marks");
+  hid_t file = dea_h5_file_create(&h);
+  dea_h5_write_text(&h, file, "format", "libdea state");
+  dea_h5_write_int(&h, file, "schema", DEA_STATE_SCHEMA);
+  dea_h5_write_text(&h, file, "version", DEA_VERSION);
+  dea_h5_write_text(&h, file, "model", model);
+  dea_h5_write_int(&h, file, "points", (long long)reach.points);
+  dea_h5_write_int(&h, file, "events", (long long)reach.events);
+  hid_t marks = dea_h5_group_create(&h, file, "marks");
   for (size_t i = 0; i < state->mark_count; i++) {
     char hex[65];
     dea_sha256_hex(state->marks[i].bytes, state->marks[i].size, hex);
-    dea_h5_put_text(&h, marks, state->marks[i].name, hex);
+    dea_h5_write_text(&h, marks, state->marks[i].name, hex);
   }
   dea_h5_close(marks);
-  hid_t arrays = dea_h5_group_make(&h, file, "arrays");
+  hid_t arrays = dea_h5_group_create(&h, file, "arrays");
   for (size_t i = 0; i < state->array_count; i++) {
-    dea_h5_put_array(&h, arrays, state->arrays[i].name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
-                     state->arrays[i].count, state->arrays[i].values, "SI", "of the model alone");
+    dea_h5_write_array(&h, arrays, state->arrays[i].name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
+                       state->arrays[i].count, state->arrays[i].values, "SI", "of the model alone");
   }
   dea_h5_close(arrays);
   dea_h5_file_write(&h, file);

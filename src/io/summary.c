@@ -19,9 +19,9 @@ static json_t *limits_json(const struct dea_curve *path)
     if (event != NULL) {
       char key[64];
       snprintf(key, sizeof key, "%s_voltage_V", dea_event_name(kinds[k]));
-      dea_json_put(object, key, event->point.voltage_V);
+      dea_json_add(object, key, event->point.voltage_V);
       snprintf(key, sizeof key, "%s_stretch", dea_event_name(kinds[k]));
-      dea_json_put(object, key, event->point.electrode_stretch);
+      dea_json_add(object, key, event->point.electrode_stretch);
     }
   }
   if (dea_curve_first_event(path, DEA_EVENT_PULL_IN) != NULL) {
@@ -50,16 +50,16 @@ static json_t *trust_json(const struct dea_curve *sweep)
   json_t *object = json_object();
   if (sweep != NULL && sweep->count > 0) {
     struct dea_trust trust = dea_curve_trust(sweep);
-    dea_json_put(object, "trusted_and_safe_V", trust.good_V);
-    dea_json_put(object, "trusted_V", trust.trusted_V);
-    dea_json_put(object, "safe_V", trust.safe_V);
+    dea_json_add(object, "trusted_and_safe_V", trust.good_V);
+    dea_json_add(object, "trusted_V", trust.trusted_V);
+    dea_json_add(object, "safe_V", trust.safe_V);
   }
   return object;
 }
 
 /* Puts what is known of one model into an object. */
-static void put_model(const struct dea_context *ctx, const struct dea_result *result,
-                      const char *model, json_t *object)
+static void write_model(const struct dea_context *ctx, const struct dea_result *result,
+                        const char *model, json_t *object)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   json_object_set_new(object, "model", json_string(model));
@@ -67,44 +67,44 @@ static void put_model(const struct dea_context *ctx, const struct dea_result *re
   json_object_set_new(object, "trust", trust_json(sweep));
   const struct dea_curve *stopped = first_stopped(result, model);
   json_object_set_new(object, "complete", json_boolean(stopped == NULL));
-  dea_json_put_text(object, "stopped", stopped != NULL ? stopped->stopped : "");
+  dea_json_add_text(object, "stopped", stopped != NULL ? stopped->stopped : "");
   json_object_set_new(object, "status",
                       json_string(dea_status_name(stopped != NULL ? stopped->status : DEA_OK)));
   json_object_set_new(object, "verdict",
                       json_string(stopped != NULL ? dea_verdict_of(stopped->status) : ""));
   const struct dea_curve *path = dea_result_find(result, model, "path");
   json_object_set_new(object, "limits", limits_json(path != NULL ? path : sweep));
-  dea_summary_put_studies(ctx, result, model, object);
+  dea_summary_add_studies(ctx, result, model, object);
 }
 
 static json_t *design_json(const struct dea_result *result)
 {
   json_t *object = json_object();
   const struct dea_design *design = result->design;
-  dea_json_put_text(object, "title", design != NULL ? design->title.text : "");
-  dea_json_put_text(object, "file", design != NULL ? design->file : "");
-  dea_json_put_text(object, "sha256", result->provenance.input_sha256);
+  dea_json_add_text(object, "title", design != NULL ? design->title.text : "");
+  dea_json_add_text(object, "file", design != NULL ? design->file : "");
+  dea_json_add_text(object, "sha256", result->provenance.input_sha256);
   return object;
 }
 
 static json_t *provenance_json(const struct dea_provenance *p)
 {
   json_t *object = json_object();
-  dea_json_put_text(object, "program", p->program);
-  dea_json_put_text(object, "compiler", p->compiler);
-  dea_json_put_text(object, "build", p->build);
-  dea_json_put_text(object, "libraries", p->libraries);
-  dea_json_put_text(object, "started", p->started);
-  dea_json_put(object, "wall_s", p->wall_s);
+  dea_json_add_text(object, "program", p->program);
+  dea_json_add_text(object, "compiler", p->compiler);
+  dea_json_add_text(object, "build", p->build);
+  dea_json_add_text(object, "libraries", p->libraries);
+  dea_json_add_text(object, "started", p->started);
+  dea_json_add(object, "wall_s", p->wall_s);
   json_t *solver = json_object();
 #define PUT(member, label)                                                                         \
   json_object_set_new(solver, #member, json_integer((json_int_t)p->solver.member));
   DEA_SOLVER_COUNTERS(PUT)
 #undef PUT
   json_object_set_new(object, "solver", solver);
-  dea_json_put_text(object, "input_sha256", p->input_sha256);
-  dea_json_put_text(object, "overrides", p->overrides);
-  dea_json_put_text(object, "command", p->command);
+  dea_json_add_text(object, "input_sha256", p->input_sha256);
+  dea_json_add_text(object, "overrides", p->overrides);
+  dea_json_add_text(object, "command", p->command);
   return object;
 }
 
@@ -126,14 +126,14 @@ dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *re
 {
   json_t *root = json_object();
   json_object_set_new(root, "schema", json_integer(DEA_SUMMARY_SCHEMA));
-  dea_json_put_text(root, "program", result->provenance.program);
+  dea_json_add_text(root, "program", result->provenance.program);
   json_object_set_new(root, "design", design_json(result));
   json_t *more = json_array();
   const char *models[DEA_DESIGN_MODELS_MAX];
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
     json_t *object = m == 0 ? root : json_object();
-    put_model(ctx, result, models[m], object);
+    write_model(ctx, result, models[m], object);
     if (m > 0) {
       json_array_append_new(more, object);
     }

@@ -16,11 +16,11 @@ static json_t *flags_json(unsigned flags)
   return list;
 }
 
-static void put_columns(json_t *object, const struct dea_context *ctx,
-                        const struct dea_load_point *point)
+static void write_columns(json_t *object, const struct dea_context *ctx,
+                          const struct dea_load_point *point)
 {
   for (int c = 0; c < dea_column_count(ctx); c++) {
-    dea_json_put(object, dea_column_at(ctx, c)->key, dea_point_get(point, c));
+    dea_json_add(object, dea_column_at(ctx, c)->key, dea_point_get(point, c));
   }
 }
 
@@ -29,14 +29,14 @@ static json_t *point_json(const struct dea_context *ctx, const struct dea_load_p
                           const struct dea_load_point *std)
 {
   json_t *object = json_object();
-  put_columns(object, ctx, point);
+  write_columns(object, ctx, point);
   json_object_set_new(object, "stable", json_boolean(point->stable));
   json_object_set_new(object, "unstable_modes", json_integer(point->unstable_modes));
   json_object_set_new(object, "trusted", json_boolean(dea_load_point_trusted(point)));
   json_object_set_new(object, "flags", flags_json(dea_load_point_flags(point)));
   if (std != NULL) {
     json_t *uncertainties = json_object();
-    put_columns(uncertainties, ctx, std);
+    write_columns(uncertainties, ctx, std);
     json_object_set_new(object, "std", uncertainties);
   }
   return object;
@@ -84,8 +84,8 @@ static json_t *cell_json(const struct dea_context *ctx, const struct dea_result 
 }
 
 /* A row's keys go into an object. */
-static void put_row(const struct dea_context *ctx, const struct dea_result *result,
-                    const struct dea_result_table *table, size_t row, json_t *object)
+static void write_row(const struct dea_context *ctx, const struct dea_result *result,
+                      const struct dea_result_table *table, size_t row, json_t *object)
 {
   for (size_t c = 0; c < table->type.column_count; c++) {
     const struct dea_result_column *column = &table->type.columns[c];
@@ -111,8 +111,8 @@ static json_t *study_object(json_t *parent, const char *study)
   return json_object_get(parent, study);
 }
 
-static void put_table(const struct dea_context *ctx, const struct dea_result *result,
-                      const struct dea_result_table *table, json_t *model)
+static void write_table(const struct dea_context *ctx, const struct dea_result *result,
+                        const struct dea_result_table *table, json_t *model)
 {
   const struct dea_result_table_type *type = &table->type;
   json_t *parent = type->key != NULL ? model : study_object(model, type->study);
@@ -120,26 +120,26 @@ static void put_table(const struct dea_context *ctx, const struct dea_result *re
   if (type->one_row) {
     json_t *object = key[0] != '\0' ? study_object(parent, key) : parent;
     for (size_t row = 0; row < table->row_count; row++) {
-      put_row(ctx, result, table, row, object);
+      write_row(ctx, result, table, row, object);
     }
     return;
   }
   json_t *list = json_array();
   for (size_t row = 0; row < table->row_count; row++) {
     json_t *object = json_object();
-    put_row(ctx, result, table, row, object);
+    write_row(ctx, result, table, row, object);
     json_array_append_new(list, object);
   }
   json_object_set_new(parent, key, list);
 }
 
-void dea_summary_put_studies(const struct dea_context *ctx, const struct dea_result *result,
+void dea_summary_add_studies(const struct dea_context *ctx, const struct dea_result *result,
                              const char *model, json_t *object)
 {
   for (size_t i = 0; i < result->table_count; i++) {
     const struct dea_result_table *table = &result->tables[i];
     if (strcmp(table->model, model) == 0 && (table->type.where & DEA_IN_JSON) != 0) {
-      put_table(ctx, result, table, object);
+      write_table(ctx, result, table, object);
     }
   }
   for (size_t i = 0; i < result->curve_count; i++) {

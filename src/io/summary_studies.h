@@ -9,5 +9,5 @@ json_t *dea_points_json(const struct dea_context *ctx, const struct dea_curve *c
 
 /* Adds the tables that studies made of a model, and the points of curves that are listed, to the
  * model's object. */
-void dea_summary_put_studies(const struct dea_context *ctx, const struct dea_result *result,
+void dea_summary_add_studies(const struct dea_context *ctx, const struct dea_result *result,
                              const char *model, json_t *object);

@@ -70,7 +70,7 @@ static bool says_std(const struct dea_device_curve_text *text)
 }
 
 /* Standard uncertainty of a value: its column's, or what the fit file says. */
-static dea_status take_std(struct reading *r, const struct dea_device_curve *curve, double absolute,
+static dea_status read_std(struct reading *r, const struct dea_device_curve *curve, double absolute,
                            double given, size_t line, double value, double *out)
 {
   const struct dea_device_curve_text *text = r->text;
@@ -150,7 +150,7 @@ static dea_status add_curve(struct reading *r, int column)
     }
     curve->value[n] = value;
     const double given = dea_point_get(&r->table->std[i], column);
-    DEA_TRY(r->ctx, take_std(r, curve, absolute, given, curve->line[n], value, &curve->std[n]));
+    DEA_TRY(r->ctx, read_std(r, curve, absolute, given, curve->line[n], value, &curve->std[n]));
     std_given = std_given || !isnan(given);
     curve->rows++;
   }
@@ -307,8 +307,8 @@ static size_t stop_of(const struct dea_device_model *model, const struct dea_dev
   return k;
 }
 
-dea_status dea_device_stops_make(struct dea_context *ctx, struct dea_device_fit *fit,
-                                 struct dea_device_model *model)
+dea_status dea_device_stops_build(struct dea_context *ctx, struct dea_device_fit *fit,
+                                  struct dea_device_model *model)
 {
   size_t rows = 0;
   for (size_t c = 0; c < fit->curve_count; c++) {

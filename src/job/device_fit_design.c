@@ -211,7 +211,7 @@ static struct changed *find_changed(const struct dea_device *device,
   return &all[i];
 }
 
-static dea_status put_key(struct dea_context *ctx, struct dea_yaml *document, const char *prefix,
+static dea_status add_key(struct dea_context *ctx, struct dea_yaml *document, const char *prefix,
                           const char *key, const char *value)
 {
   char path[DEA_NUMBER_KEY_SIZE];
@@ -220,26 +220,26 @@ static dea_status put_key(struct dea_context *ctx, struct dea_yaml *document, co
 }
 
 /* Has a part take a material from `materials`. */
-static dea_status put_material(struct dea_context *ctx, const struct dea_device *device,
+static dea_status set_material(struct dea_context *ctx, const struct dea_device *device,
                                struct dea_yaml *document, const struct changed *changed)
 {
   static const char *const gone[] = {"law", "permittivity", "breakdown"};
   char prefix[DEA_MATERIAL_PREFIX_SIZE];
   dea_material_prefix(device, changed->material, prefix);
-  DEA_TRY(ctx, put_key(ctx, document, prefix, "material", changed->name));
+  DEA_TRY(ctx, add_key(ctx, document, prefix, "material", changed->name));
   if (changed->material == DEA_OF_ELECTRODES || changed->material == DEA_OF_FIBRES) {
     return DEA_OK; // they have no such keys
   }
   for (size_t k = 0; k < sizeof gone / sizeof gone[0]; k++) {
-    DEA_TRY(ctx, put_key(ctx, document, prefix, gone[k], "null"));
+    DEA_TRY(ctx, add_key(ctx, document, prefix, gone[k], "null"));
   }
   const bool viscous = changed->with.branch_count > 0;
-  return put_key(ctx, document, prefix, "viscosity", viscous ? "null" : "none");
+  return add_key(ctx, document, prefix, "viscosity", viscous ? "null" : "none");
 }
 
 /* Puts the values of keys into the document, and has parts take their materials from `materials`
  * where these have other numbers. */
-static dea_status put_values(struct dea_context *ctx, const struct dea_device *device,
+static dea_status add_values(struct dea_context *ctx, const struct dea_device *device,
                              const struct dea_device_values *with, struct dea_yaml *document,
                              struct changed *all, size_t *count)
 {
@@ -254,17 +254,17 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device *d
         DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
       } else {
         struct changed *changed = find_changed(device, with, param->material, all, count);
-        dea_device_param_put(param, value, &changed->with);
+        dea_device_param_set(param, value, &changed->with);
       }
     }
   }
   for (size_t i = 0; i < *count; i++) {
-    DEA_TRY(ctx, put_material(ctx, device, document, &all[i]));
+    DEA_TRY(ctx, set_material(ctx, device, document, &all[i]));
   }
   return DEA_OK;
 }
 
-static dea_status put_title(struct dea_context *ctx, struct dea_yaml *document, const char *title)
+static dea_status add_title(struct dea_context *ctx, struct dea_yaml *document, const char *title)
 {
   struct dea_text text = {.ctx = ctx};
   dea_text_add(&text, "\"");
@@ -291,12 +291,12 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
     dea_free(ctx, changed);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  status = put_values(ctx, device, with, document, changed, &count);
+  status = add_values(ctx, device, with, document, changed, &count);
   if (status == DEA_OK && with->uncertainty[0] != '\0') {
     status = dea_yaml_override(ctx, document, "compute.uncertainty", with->uncertainty);
   }
   if (status == DEA_OK && with->title[0] != '\0') {
-    status = put_title(ctx, document, with->title);
+    status = add_title(ctx, document, with->title);
   }
   void *before = dea_c_locale_enter();
   if (status == DEA_OK) {
@@ -319,9 +319,9 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
   return status;
 }
 
-dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit *fit,
-                                  const struct dea_design_bytes *file,
-                                  const struct dea_device *device)
+dea_status dea_device_design_build(struct dea_context *ctx, struct dea_device_fit *fit,
+                                   const struct dea_design_bytes *file,
+                                   const struct dea_device *device)
 {
   double values[DEA_DEVICE_PARAMS_MAX];
   for (size_t j = 0; j < fit->param_count; j++) {

@@ -142,9 +142,9 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
 }
 
 /* Points at the times of a group, on the straight pieces between the steps of the study. */
-static void take_times(struct dea_device_model *model, const struct dea_device_group *group,
-                       const struct dea_curve *curve, double *time_s, double *values,
-                       struct dea_load_point *points)
+static void set_times(struct dea_device_model *model, const struct dea_device_group *group,
+                      const struct dea_curve *curve, double *time_s, double *values,
+                      struct dea_load_point *points)
 {
   for (size_t i = 0; i < curve->count; i++) {
     time_s[i] = curve->points[i].time_s;
@@ -178,7 +178,7 @@ static dea_status play(struct dea_device_model *model, const struct dea_design *
   if (curve != NULL && curve->count > 0 && !is_fatal(status)) {
     double *both = dea_alloc(ctx, curve->count, 2 * sizeof *both);
     if (both != NULL) {
-      take_times(model, group, curve, both, both + curve->count, points);
+      set_times(model, group, curve, both, both + curve->count, points);
     }
     status = both != NULL && !model->monitors.failed ? status : DEA_E_MEMORY;
     dea_free(ctx, both);
@@ -277,7 +277,7 @@ void dea_device_model_end(struct dea_device_model *model)
 
 /* The design of numbers p becomes the one to begin from; where it fails at a voltage nobody does.
  */
-static dea_status take_start(struct dea_device_model *model, const double *p)
+static dea_status set_start(struct dea_device_model *model, const double *p)
 {
   struct dea_device_start *start = &model->start;
   struct dea_context *ctx = model->ctx;
@@ -319,7 +319,7 @@ static dea_status sweep_from(struct dea_device_model *model, const double *from,
   const size_t size = model->param_count * sizeof *p;
   const bool own = memcmp(from, p, size) == 0;
   if (own || !model->start.there || memcmp(model->start.p, from, size) != 0) {
-    dea_status status = take_start(model, from);
+    dea_status status = set_start(model, from);
     if (own && status == DEA_OK) {
       memcpy(points, model->start.points, model->stop_count * sizeof *points);
     }

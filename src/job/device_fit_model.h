@@ -80,18 +80,19 @@ dea_status dea_device_model_sweep(struct dea_device_model *model, const double *
                                   const double *p, struct dea_load_point *points);
 /* A parameter, a text of a fit file, with what the design says of it: unit, limits, value; where it
  * starts, which with whole numbers may be 0. Errors are findings, the status DEA_OK also then. */
-dea_status dea_device_param_make(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
-                                 const struct dea_device_param_source *source,
-                                 struct dea_device_param *out);
+dea_status dea_device_param_build(struct dea_context *ctx,
+                                  const struct dea_fit_parameter_text *text,
+                                  const struct dea_device_param_source *source,
+                                  struct dea_device_param *out);
 /* A number for a parameter, with its unit and, of a length in the film, its state; in SI. Errors
  * are findings, the status DEA_OK also then and *out NAN. */
 dea_status dea_device_param_number(struct dea_context *ctx, const struct dea_device_param *param,
                                    const struct dea_label *label, double *out);
 /* All parameters of a fit file with what the design says of them: unit, limits, value. Errors are
  * findings; DEA_E_DESIGN then. */
-dea_status dea_device_params_make(struct dea_context *ctx, const struct dea_device_file *file,
-                                  const struct dea_design *design, const struct dea_device *device,
-                                  struct dea_device_param *out);
+dea_status dea_device_params_create(struct dea_context *ctx, const struct dea_device_file *file,
+                                    const struct dea_design *design,
+                                    const struct dea_device *device, struct dea_device_param *out);
 
 /* Values that take the place of a design's own. */
 struct dea_device_values {

@@ -21,8 +21,8 @@ struct work {
 
 /* What a material of the catalogue says of a parameter; NAN where it says nothing. law: that the
  * material of the design has. */
-static void look_up(const struct dea_material_data *data, const struct dea_device_param *param,
-                    const struct dea_law *law, double *value, double *std)
+static void find_value(const struct dea_material_data *data, const struct dea_device_param *param,
+                       const struct dea_law *law, double *value, double *std)
 {
   const size_t offset = param->offset;
   *value = *std = NAN;
@@ -58,7 +58,8 @@ static dea_status prior_of_material(struct work *w, struct dea_fit_parameter_tex
   struct dea_catalogue_entry *entry;
   double value, std;
   DEA_TRY(w->ctx, dea_catalogue_read(w->ctx, text->prior.text, text->prior.location, &entry));
-  look_up(&entry->data, out, dea_material_of(w->source.device, out->material)->law, &value, &std);
+  find_value(&entry->data, out, dea_material_of(w->source.device, out->material)->law, &value,
+             &std);
   dea_catalogue_destroy(w->ctx, entry);
   snprintf(out->prior_of, sizeof out->prior_of, "%.63s", text->prior.text);
   if (isnan(value)) {
@@ -116,8 +117,8 @@ static dea_status settle(struct work *w, const struct dea_fit_parameter_text *te
   return DEA_OK;
 }
 
-static dea_status make_one(struct work *w, const struct dea_fit_parameter_text *asked,
-                           struct dea_device_param *out)
+static dea_status build_one(struct work *w, const struct dea_fit_parameter_text *asked,
+                            struct dea_device_param *out)
 {
   struct dea_fit_parameter_text text = *asked;
   const char *name = text.name.text;
@@ -130,7 +131,7 @@ static dea_status make_one(struct work *w, const struct dea_fit_parameter_text *
   }
   struct dea_label *labels[] = {&text.start, &text.low, &text.high, &text.prior};
   for (size_t k = 0; k < 4; k++) { // all of them in the state of the design's value
-    const char *state = dea_device_param_take_state(labels[k]->text);
+    const char *state = dea_device_param_split_state(labels[k]->text);
     out->state = out->state[0] == '\0' ? state : out->state;
     if (state[0] != '\0' && strcmp(state, out->state) != 0) {
       return dea_finding_add(w->ctx, DEA_ERROR, labels[k]->location,
@@ -149,17 +150,18 @@ static dea_status make_one(struct work *w, const struct dea_fit_parameter_text *
              DEA_UNIT_BEHIND(out->param.unit));
   }
   const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
-  DEA_TRY(w->ctx, dea_fit_param_take(w->ctx, &text, &out->param));
+  DEA_TRY(w->ctx, dea_fit_param_read(w->ctx, &text, &out->param));
   return dea_finding_count(w->ctx, DEA_ERROR) == errors ? settle(w, &text, start_given, out)
                                                         : DEA_OK;
 }
 
-dea_status dea_device_param_make(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
-                                 const struct dea_device_param_source *source,
-                                 struct dea_device_param *out)
+dea_status dea_device_param_build(struct dea_context *ctx,
+                                  const struct dea_fit_parameter_text *text,
+                                  const struct dea_device_param_source *source,
+                                  struct dea_device_param *out)
 {
   struct work w = {.ctx = ctx, .source = *source};
-  return make_one(&w, text, out);
+  return build_one(&w, text, out);
 }
 
 dea_status dea_device_param_number(struct dea_context *ctx, const struct dea_device_param *param,
@@ -167,7 +169,7 @@ dea_status dea_device_param_number(struct dea_context *ctx, const struct dea_dev
 {
   char text[DEA_TITLE_SIZE], why[DEA_WHY_SIZE] = "";
   snprintf(text, sizeof text, "%s", label->text);
-  const char *state = dea_device_param_take_state(text);
+  const char *state = dea_device_param_split_state(text);
   *out = NAN;
   if (state[0] != '\0' && strcmp(state, param->state) != 0) {
     snprintf(why, sizeof why, "it is a length%s in the design: write it so here too", param->state);
@@ -180,14 +182,14 @@ dea_status dea_device_param_number(struct dea_context *ctx, const struct dea_dev
                          label->text, why);
 }
 
-dea_status dea_device_params_make(struct dea_context *ctx, const struct dea_device_file *file,
-                                  const struct dea_design *design, const struct dea_device *device,
-                                  struct dea_device_param *out)
+dea_status dea_device_params_create(struct dea_context *ctx, const struct dea_device_file *file,
+                                    const struct dea_design *design,
+                                    const struct dea_device *device, struct dea_device_param *out)
 {
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   struct work w = {.ctx = ctx, .source = {.design = design, .device = device}};
   for (size_t k = 0; k < file->parameter_count; k++) {
-    DEA_TRY(ctx, make_one(&w, &file->parameters[k], &out[k]));
+    DEA_TRY(ctx, build_one(&w, &file->parameters[k], &out[k]));
   }
   return dea_finding_count(ctx, DEA_ERROR) == errors
              ? DEA_OK

@@ -6,9 +6,9 @@
 /* Reads the measured curves, one a quantity of each file. Errors are findings. */
 dea_status dea_device_curves_read(struct dea_context *ctx, struct dea_device_fit *fit);
 /* Sets groups and stops of a model: each voltage once, rising; and the stop of each row. */
-dea_status dea_device_stops_make(struct dea_context *ctx, struct dea_device_fit *fit,
-                                 struct dea_device_model *model);
+dea_status dea_device_stops_build(struct dea_context *ctx, struct dea_device_fit *fit,
+                                  struct dea_device_model *model);
 /* The fitted design as a file, into fit->design; file: as it was, device: built from it. */
-dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit *fit,
-                                  const struct dea_design_bytes *file,
-                                  const struct dea_device *device);
+dea_status dea_device_design_build(struct dea_context *ctx, struct dea_device_fit *fit,
+                                   const struct dea_design_bytes *file,
+                                   const struct dea_device *device);

@@ -82,10 +82,10 @@ static dea_status read_design(struct work *w)
   return DEA_OK;
 }
 
-static dea_status make_params(struct work *w)
+static dea_status build_params(struct work *w)
 {
   struct dea_device_fit *fit = w->fit;
-  DEA_TRY(w->ctx, dea_device_params_make(w->ctx, fit->file, w->design, w->device, fit->params));
+  DEA_TRY(w->ctx, dea_device_params_create(w->ctx, fit->file, w->design, w->device, fit->params));
   fit->param_count = fit->file->parameter_count;
   for (size_t j = 0; j < fit->param_count; j++) {
     const struct dea_fit_param *param = &fit->params[j].param;
@@ -101,7 +101,7 @@ static dea_status make_params(struct work *w)
 }
 
 /* In time every step is kept, and short enough for derivatives by differences. */
-static dea_status make_fine(struct work *w)
+static dea_status build_fine(struct work *w)
 {
   static const char *const keys[][2] = {{"compute.transient.interval", "1e-12 s"},
                                         {"compute.transient.tolerance", "1e-6"}};
@@ -144,7 +144,7 @@ static dea_status check_times(struct work *w)
                                     "the model %s does not support transients", w->fit->model));
       return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
     }
-    return make_fine(w);
+    return build_fine(w);
   }
   return DEA_OK;
 }
@@ -165,7 +165,7 @@ static dea_status check_tips(struct work *w)
 }
 
 /* Whether all fitted rows have uncertainties, or none and all are of one quantity. */
-static dea_status look_at_uncertainties(struct work *w)
+static dea_status check_uncertainties(struct work *w)
 {
   struct dea_device_fit *fit = w->fit;
   const struct dea_device_curve *first = NULL, *lacking = NULL;
@@ -240,7 +240,7 @@ static size_t count_used(const struct dea_device_curve *curve)
   return rows;
 }
 
-static void make_problem(struct work *w)
+static void build_problem(struct work *w)
 {
   const bool meshed = w->model.type->load != NULL;
   size_t rows = 0;
@@ -395,7 +395,7 @@ static dea_status check_count(struct work *w)
 }
 
 /* A start that the design cannot be built with: its errors are told. */
-static dea_status tell_start(struct work *w)
+static dea_status report_start(struct work *w)
 {
   const struct dea_design_bytes file = {w->path, w->bytes, w->length};
   struct dea_design *design;
@@ -417,8 +417,8 @@ static dea_status prepare(struct work *w)
   DEA_TRY(w->ctx, dea_device_curves_read(w->ctx, w->fit));
   DEA_TRY(w->ctx, check_tips(w));
   DEA_TRY(w->ctx, check_times(w));
-  DEA_TRY(w->ctx, look_at_uncertainties(w));
-  DEA_TRY(w->ctx, dea_device_stops_make(w->ctx, w->fit, &w->model));
+  DEA_TRY(w->ctx, check_uncertainties(w));
+  DEA_TRY(w->ctx, dea_device_stops_build(w->ctx, w->fit, &w->model));
   w->slack = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->slack);
   w->wanted = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->wanted);
   own = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *own);
@@ -431,12 +431,12 @@ static dea_status prepare(struct work *w)
   DEA_TRY(w->ctx, keep_designed(w));
   if (!w->starts_designed) {
     dea_status status = dea_device_model_sweep(&w->model, NULL, w->start, own);
-    DEA_TRY(w->ctx, status == DEA_E_DOMAIN ? tell_start(w) : status);
+    DEA_TRY(w->ctx, status == DEA_E_DOMAIN ? report_start(w) : status);
   }
   const struct dea_load_point *points = w->starts_designed ? w->designed : own;
   find_slack(w, points, true, w->slack);
   cut_slack(w);
-  make_problem(w);
+  build_problem(w);
   DEA_TRY(w->ctx, check_start(w, points));
   return check_count(w);
 }
@@ -454,7 +454,7 @@ static dea_status solve(struct work *w)
     if (round > 0) {
       memcpy(w->start, w->fit->least_squares.p, w->problem.params * sizeof *w->start);
       dea_lsq_free(&w->fit->least_squares);
-      make_problem(w);
+      build_problem(w);
       DEA_TRY(w->ctx, check_count(w));
     }
     DEA_TRY(w->ctx, dea_lsq_solve(w->ctx, &w->problem, w->start, w->held, &w->fit->least_squares));
@@ -717,7 +717,7 @@ static bool propose_quantity(struct work *w, const struct slopes *s, const char 
   return true;
 }
 
-static dea_status tell(struct work *w, const struct slopes *s)
+static dea_status report_fit(struct work *w, const struct slopes *s)
 {
   static const char *const keys[] = {"electrode_stretch", "capacitance_F", "fibre_tip_z_m",
                                      "centre_z_m",        "highest_z_m",   "lowest_z_m"};
@@ -764,18 +764,18 @@ static dea_status finish(struct work *w)
     }
   }
   fill_derived(w, &slopes);
-  DEA_TRY(w->ctx, tell(w, &slopes));
+  DEA_TRY(w->ctx, report_fit(w, &slopes));
   fit->scatter = sqrt(squares / (double)(rows > 0 ? rows : 1));
   fit->evaluations = w->model.evaluations;
   const struct dea_design_bytes file = {w->path, w->bytes, w->length};
-  return dea_device_design_make(w->ctx, fit, &file, w->device);
+  return dea_device_design_build(w->ctx, fit, &file, w->device);
 }
 
 static dea_status run(struct work *w)
 {
   DEA_TRY(w->ctx, find_model(w));
   DEA_TRY(w->ctx, read_design(w));
-  DEA_TRY(w->ctx, make_params(w));
+  DEA_TRY(w->ctx, build_params(w));
   DEA_TRY(w->ctx, prepare(w));
   DEA_TRY(w->ctx, solve_all(w));
   return finish(w);

@@ -65,7 +65,7 @@ static dea_status read_summary(struct dea_context *ctx, struct dea_report_run *o
 }
 
 /* Without a summary: what reading the design says again. */
-static dea_status take_findings(struct dea_context *ctx, struct dea_report_run *out)
+static dea_status read_findings(struct dea_context *ctx, struct dea_report_run *out)
 {
   size_t count;
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
@@ -104,7 +104,7 @@ static dea_status open_run(struct dea_context *ctx, const char *path, int number
   }
   bool found = false;
   DEA_TRY(ctx, dea_path_is_folder(path) ? read_summary(ctx, out, &found) : DEA_OK);
-  DEA_TRY(ctx, !found ? take_findings(ctx, out) : DEA_OK);
+  DEA_TRY(ctx, !found ? read_findings(ctx, out) : DEA_OK);
   dea_finding_clear(ctx); // they stand in the page
   return DEA_OK;
 }

@@ -52,7 +52,7 @@ dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory
   }
   DEA_TRY(ctx, refuse_link(ctx, directory, DEA_FIGURE_FOLDER));
   DEA_TRY(ctx, refuse_link(ctx, directory, DEA_FIELD_FOLDER));
-  DEA_TRY(ctx, dea_folder_make(ctx, directory));
+  DEA_TRY(ctx, dea_folder_create(ctx, directory));
   if (access(directory, W_OK) != 0) {
     return dea_fail(ctx, DEA_E_IO, "the folder %s cannot be written to", directory);
   }

@@ -315,7 +315,7 @@ static int find_set(struct dea_context *ctx, const struct dea_material_data *dat
 }
 
 /* Standard uncertainties, and correlations of those that have one, in the order of the file. */
-static void take_uncertainties(const struct dea_law_set *set, struct dea_material *out)
+static void read_uncertainties(const struct dea_law_set *set, struct dea_material *out)
 {
   size_t next = 0;
   for (size_t i = 0; i < set->law->param_count; i++) {
@@ -329,14 +329,14 @@ static void take_uncertainties(const struct dea_law_set *set, struct dea_materia
   }
 }
 
-static void take_law(const struct dea_law_set *set, struct dea_material *out)
+static void read_law(const struct dea_law_set *set, struct dea_material *out)
 {
   snprintf(out->law_id, sizeof out->law_id, "%.63s", set->id.text);
   out->law = set->law;
   for (size_t i = 0; i < set->law->param_count; i++) {
     out->param[i] = isnan(set->param[i].si) ? 0 : set->param[i].si; // optional, not given
   }
-  take_uncertainties(set, out);
+  read_uncertainties(set, out);
   out->fibre_angle_rad = set->fibre_angle_rad.si;
   if (set->range.count == 2) {
     out->stretch_min = set->range.limits[0].si;
@@ -349,7 +349,7 @@ static double given_or(const struct dea_quantity *value, double otherwise)
   return isnan(value->si) ? otherwise : value->si;
 }
 
-static void take_breakdown(const struct dea_breakdown_set *set, struct dea_breakdown *out)
+static void read_breakdown(const struct dea_breakdown_set *set, struct dea_breakdown *out)
 {
   double at_rest = set->at_rest_V_per_m.si;
   bool band = set->values.count == 2;
@@ -371,7 +371,7 @@ static void take_breakdown(const struct dea_breakdown_set *set, struct dea_break
 
 /* Branches as moduli, a ratio being of the law's shear modulus at rest, with their times at the
  * temperature of the device. */
-static dea_status take_viscosity(struct dea_context *ctx, const struct dea_viscosity_set *set,
+static dea_status read_viscosity(struct dea_context *ctx, const struct dea_viscosity_set *set,
                                  const struct dea_quantity *temperature, struct dea_material *out)
 {
   double shift = 1;
@@ -440,17 +440,17 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
   dea_text_free(&unknown);
   DEA_TRY(ctx, status);
   if (data->law_count > 0) {
-    take_law(&data->laws[law], out);
+    read_law(&data->laws[law], out);
   }
   if (data->permittivity_count > 0) {
     const struct dea_permittivity_set *set = &data->permittivity[permittivity];
     out->permittivity = (struct dea_permittivity){set->at_rest.si, set->slope.si};
   }
   if (data->breakdown_count > 0) {
-    take_breakdown(&data->breakdown[breakdown], &out->breakdown);
+    read_breakdown(&data->breakdown[breakdown], &out->breakdown);
   }
   if (viscous && data->viscosity_count > 0) {
-    DEA_TRY(ctx, take_viscosity(ctx, &data->viscosity[viscosity], temperature, out));
+    DEA_TRY(ctx, read_viscosity(ctx, &data->viscosity[viscosity], temperature, out));
   }
   if (data->has_resistivity) {
     out->resistivity_ohm_m = data->resistivity.value_ohm_m.si;

@@ -136,7 +136,7 @@ struct dea_reach dea_material_reach(const struct dea_material *material, double 
   return reach;
 }
 
-void dea_reach_take(struct dea_reach *reach, struct dea_reach other)
+void dea_reach_merge(struct dea_reach *reach, struct dea_reach other)
 {
   reach->locking_share = fmax(reach->locking_share, other.locking_share);
   reach->range_share = fmax(reach->range_share, other.range_share);

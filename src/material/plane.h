@@ -38,7 +38,7 @@ struct dea_reach {
 struct dea_reach dea_material_reach(const struct dea_material *material, double lambda1,
                                     double lambda2);
 /* *reach becomes the larger of the two, share by share; NAN counts as nothing. */
-void dea_reach_take(struct dea_reach *reach, struct dea_reach other);
+void dea_reach_merge(struct dea_reach *reach, struct dea_reach other);
 
 /* Makes at_rest and exponent from the law for a film of an unstretched thickness > 0 under
  * electrodes of an unstretched area > 0; 0 for either: that of the law (docs/theory/breakdown.md).

@@ -527,7 +527,7 @@ dea_status dea_path_solve(struct dea_context *ctx, struct dea_path *path, const 
   DEA_TRY(ctx, dea_path_seek(ctx, path, voltage_V, max_stretch));
   DEA_TRY(ctx, dea_path_point(ctx, path, out));
   if (path->passed) {
-    DEA_TRY(ctx, dea_model_say_passed(ctx, model, from_V, voltage_V, &path->limit));
+    DEA_TRY(ctx, dea_model_report_passed(ctx, model, from_V, voltage_V, &path->limit));
   }
   out->told |= (unsigned)path->beyond << DEA_FLAG_STATES;
   return DEA_OK;
@@ -561,7 +561,7 @@ struct found_events {
   size_t count;
 };
 
-static void put_event(struct found_events *found, enum dea_event_kind kind,
+static void add_event(struct found_events *found, enum dea_event_kind kind,
                       const struct dea_load_point *point, double arc)
 {
   size_t i = found->count++;
@@ -593,11 +593,11 @@ static dea_status report_events(struct trace *trace, const struct dea_path_state
     }
     DEA_TRY(ctx, locate(trace->path, from, ds, kinds[k], &trace->watch, at_0, at_1, &at, &state,
                         &point));
-    put_event(&found, event_kind(kinds[k], at_0), &point, at);
+    add_event(&found, event_kind(kinds[k], at_0), &point, at);
   }
   if (trace->events != NULL &&
       thins_within(trace->path, from, &trace->before, ds, to, &trace->now, &at, &point)) {
-    put_event(&found, DEA_EVENT_PULL_IN, &point, at);
+    add_event(&found, DEA_EVENT_PULL_IN, &point, at);
   }
   for (size_t i = 0; i < found.count; i++) {
     DEA_TRY(ctx, trace->events(trace->user, &found.event[i]));

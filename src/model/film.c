@@ -41,8 +41,8 @@ static void add(struct dea_plane *sum, double factor, const struct dea_plane *te
   sum->k22 += factor * term->k22;
 }
 
-dea_status dea_film_say_weight(struct dea_context *ctx, const struct dea_device *device,
-                               const char *model)
+dea_status dea_film_report_weight(struct dea_context *ctx, const struct dea_device *device,
+                                  const char *model)
 {
   if (device->gravity != DEA_GRAVITY_OFF) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},

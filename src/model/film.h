@@ -27,8 +27,8 @@ double dea_film_electrode_ratio(const struct dea_device *device);
 
 /* A note where the device asks for weight, which models of a flat film do not have. model: its
  * name. */
-dea_status dea_film_say_weight(struct dea_context *ctx, const struct dea_device *device,
-                               const char *model);
+dea_status dea_film_report_weight(struct dea_context *ctx, const struct dea_device *device,
+                                  const char *model);
 
 /* W, nominal stresses s_i = dW/dl_i (paper eqs 5, 13) and their derivatives, per unstretched volume
  * of the film. active: with electrodes and field; the electrodes are printed on the unstretched

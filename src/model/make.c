@@ -1,6 +1,6 @@
 #include "model/make.h"
 
-dea_status dea_model_make(
+dea_status dea_model_build(
     struct dea_context *ctx, size_t size, const struct dea_device *device,
     const struct dea_model_settings *settings,
     dea_status (*prepare)(struct dea_context *ctx, const struct dea_device *device,
@@ -20,8 +20,8 @@ dea_status dea_model_make(
   return DEA_OK;
 }
 
-dea_status dea_model_say_passed(struct dea_context *ctx, const char *name, double from_V,
-                                double to_V, const struct dea_event *passed)
+dea_status dea_model_report_passed(struct dea_context *ctx, const char *name, double from_V,
+                                   double to_V, const struct dea_event *passed)
 {
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "model %s: from %.6g to %.6g kV it leaps past a limit point, %s at %.6g "

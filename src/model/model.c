@@ -105,7 +105,7 @@ dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_typ
   return type->profile != NULL ? type->profile(ctx, model, out) : lacks(ctx, type, "profile");
 }
 
-static dea_status take_last(void *user, const struct dea_load_point *point)
+static dea_status get_last(void *user, const struct dea_load_point *point)
 {
   *(struct dea_load_point *)user = *point;
   return DEA_OK;
@@ -122,7 +122,7 @@ dea_status dea_model_stretch(struct dea_context *ctx, const struct dea_model_typ
       .max_points = type->path != NULL ? DEA_PATH_POINTS_MAX : DEA_LONG_PATH_POINTS_MAX,
       .stays = true};
   *out = dea_load_point_empty();
-  DEA_TRY(ctx, dea_model_path(ctx, type, model, &options, take_last, NULL, out));
+  DEA_TRY(ctx, dea_model_path(ctx, type, model, &options, get_last, NULL, out));
   return fabs(out->electrode_stretch - stretch) <= close * stretch
              ? DEA_OK
              : dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
@@ -135,7 +135,7 @@ dea_status dea_model_stretch(struct dea_context *ctx, const struct dea_model_typ
  * has. */
 static dea_status answer(struct dea_context *ctx, const struct dea_model_type *type,
                          const struct dea_model_settings *settings, const struct dea_device *device,
-                         double voltage_V, const struct dea_gradient_ask *ask, double *out)
+                         double voltage_V, const struct dea_gradient_request *ask, double *out)
 {
   struct dea_model *model;
   struct dea_load_point point;
@@ -165,7 +165,7 @@ static dea_status answer(struct dea_context *ctx, const struct dea_model_type *t
 /* Differences of the changed devices, which are solved each by itself. */
 static dea_status difference(struct dea_context *ctx, const struct dea_model_type *type,
                              const struct dea_model_settings *settings,
-                             const struct dea_gradient_ask *ask, double *out)
+                             const struct dea_gradient_request *ask, double *out)
 {
   const size_t width = dea_gradient_width(ask);
   double *sides = dea_alloc(ctx, 2 * width, sizeof *sides);
@@ -186,7 +186,7 @@ static dea_status difference(struct dea_context *ctx, const struct dea_model_typ
 
 dea_status dea_model_gradient(struct dea_context *ctx, const struct dea_model_type *type,
                               struct dea_model *model, const struct dea_model_settings *settings,
-                              const struct dea_gradient_ask *ask, double *out)
+                              const struct dea_gradient_request *ask, double *out)
 {
   return DEA_CHAIN(ctx, type->gradient != NULL ? type->gradient(ctx, model, ask, out)
                                                : difference(ctx, type, settings, ask, out));

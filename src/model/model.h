@@ -171,7 +171,7 @@ struct dea_design_change {
 };
 /* Slopes that are wanted: of columns of load points (result/columns.h), then of a motion of
  * monitors of the layout, by changes. All lent. */
-struct dea_gradient_ask {
+struct dea_gradient_request {
   const struct dea_design_change *changes; // [change_count]
   size_t change_count;
   const int *columns; // [column_count]
@@ -190,7 +190,7 @@ struct dea_gradient_ask {
 };
 
 /* How many quantities that are. */
-static inline size_t dea_gradient_width(const struct dea_gradient_ask *ask)
+static inline size_t dea_gradient_width(const struct dea_gradient_request *ask)
 {
   return ask->of_limit ? 1 : ask->column_count + ask->monitor_count;
 }
@@ -237,7 +237,7 @@ struct dea_model_type {
    * (docs/theory/gradients.md): NAN where the model has none, and of a change that its mesh cannot
    * follow, with a note. NULL: dea_model_gradient computes the changed devices. */
   dea_status (*gradient)(struct dea_context *ctx, struct dea_model *model,
-                         const struct dea_gradient_ask *ask, double *out);
+                         const struct dea_gradient_request *ask, double *out);
   /* Monitors, bodies and channels of the device's layout at the last point solved; out lends from
    * the model until the next call. NULL when the model knows none. */
   dea_status (*observe)(struct dea_context *ctx, struct dea_model *model,
@@ -370,7 +370,7 @@ dea_status dea_model_stretch(struct dea_context *ctx, const struct dea_model_typ
  * at its voltage, with these settings. */
 dea_status dea_model_gradient(struct dea_context *ctx, const struct dea_model_type *type,
                               struct dea_model *model, const struct dea_model_settings *settings,
-                              const struct dea_gradient_ask *ask, double *out);
+                              const struct dea_gradient_request *ask, double *out);
 dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, struct dea_observation *out);
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,

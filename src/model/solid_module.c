@@ -184,7 +184,7 @@ static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
 }
 
 static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
-                           const struct dea_gradient_ask *ask, double *out)
+                           const struct dea_gradient_request *ask, double *out)
 {
   return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->gradient(ctx, model->inner, ask, out)));
 }

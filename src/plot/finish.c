@@ -117,7 +117,7 @@ static uint32_t check_of(const unsigned char *bytes, size_t count)
   return ~check;
 }
 
-static void put_u32(unsigned char *to, uint32_t value)
+static void write_u32(unsigned char *to, uint32_t value)
 {
   for (int i = 0; i < 4; i++) {
     to[i] = (unsigned char)(value >> (24 - 8 * i));
@@ -139,10 +139,10 @@ dea_status dea_png_finish(struct dea_context *ctx, const char *bytes, size_t len
     return DEA_OK;
   }
   unsigned char chunk[CHUNK] = {0, 0, 0, 9, 'p', 'H', 'Y', 's'};
-  put_u32(chunk + 8, (uint32_t)(dots_per_m + 0.5));
-  put_u32(chunk + 12, (uint32_t)(dots_per_m + 0.5));
+  write_u32(chunk + 8, (uint32_t)(dots_per_m + 0.5));
+  write_u32(chunk + 12, (uint32_t)(dots_per_m + 0.5));
   chunk[16] = 1; // the unit is the metre
-  put_u32(chunk + 17, check_of(chunk + 4, 13));
+  write_u32(chunk + 17, check_of(chunk + 4, 13));
   memcpy(*out, bytes, HEAD);
   memcpy(*out + HEAD, chunk, CHUNK);
   memcpy(*out + HEAD + CHUNK, bytes + HEAD, length - HEAD);

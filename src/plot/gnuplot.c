@@ -148,7 +148,7 @@ dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
   snprintf(name, sizeof name, ".drawing.%ld", (long)getpid());
   char *drawing = dea_path_join(ctx, directory, name);
   DEA_TRY_MEMORY(drawing != NULL);
-  dea_status status = dea_folder_make(ctx, drawing);
+  dea_status status = dea_folder_create(ctx, drawing);
   if (status == DEA_OK) {
     status = draw(ctx, directory, drawing, names, count);
     for (size_t i = 0; i < count && status == DEA_OK; i++) {
@@ -203,14 +203,14 @@ dea_status dea_plot_folder_draw(struct dea_plot_folder *folder, dea_status statu
   return status;
 }
 
-dea_status dea_gnuplot_make_way(struct dea_context *ctx, const char *directory, const char *name,
-                                bool force)
+dea_status dea_gnuplot_create_folders(struct dea_context *ctx, const char *directory,
+                                      const char *name, bool force)
 {
   static const char *const outcomes[] = {"", ".gp", ".dat", ".svg", ".pdf", ".png"};
   for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0]; i++) {
     char file[128];
     snprintf(file, sizeof file, "%.119s%s", name, outcomes[i]);
-    DEA_TRY(ctx, dea_path_make_way(ctx, directory, file, force));
+    DEA_TRY(ctx, dea_path_create_folders(ctx, directory, file, force));
   }
   return DEA_OK;
 }

@@ -11,5 +11,5 @@ dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
 
 /* Before a folder is written to: removes with `force`, refuses without (DEA_E_IO), a file of that
  * name and all that a drawing of that name leaves: script, data, pictures. */
-dea_status dea_gnuplot_make_way(struct dea_context *ctx, const char *directory, const char *name,
-                                bool force);
+dea_status dea_gnuplot_create_folders(struct dea_context *ctx, const char *directory,
+                                      const char *name, bool force);

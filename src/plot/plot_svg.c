@@ -54,7 +54,7 @@ static void find_ranges(const struct dea_panel *panel, struct range *x, struct r
   }
 }
 
-static struct view make_view(const struct dea_panel *panel, double top, double height)
+static struct view build_view(const struct dea_panel *panel, double top, double height)
 {
   struct range x, y[2];
   find_ranges(panel, &x, y);
@@ -407,7 +407,7 @@ void dea_plot_add_svg(struct dea_text *out, const struct dea_plot *plot, int num
   double height = TOP;
   for (size_t p = 0; p < plot->panel_count; p++) {
     double own = p == 0 ? HEIGHT : HEIGHT * plot->second_height;
-    views[p] = make_view(&plot->panels[p], height, own);
+    views[p] = build_view(&plot->panels[p], height, own);
     if (p > 0) { // one x axis for both
       views[p].x = views[0].x;
     }

@@ -75,7 +75,7 @@ static dea_status add_sweep(struct dea_report *report, const struct dea_result *
       values[k * e.quantity_count + q] = dea_point_get(points[k], columns[q]);
     }
   }
-  DEA_TRY(report->ctx, dea_emulator_make(report->ctx, &e));
+  DEA_TRY(report->ctx, dea_emulator_build(report->ctx, &e));
   json_array_append_new(sources, dea_emulator_json(&e));
   dea_emulator_free(report->ctx, &e);
   return DEA_OK;
@@ -123,8 +123,8 @@ dea_status dea_section_explorer(struct dea_report *report, const struct dea_repo
   size_t i;
   json_array_foreach(sources, i, source)
   {
-    dea_json_put(source, "finger_N_per_m", report->options->finger_N_per_m);
-    dea_json_put(source, "voltage_V", design != NULL ? dea_design_highest_V(design) : 0);
+    dea_json_add(source, "finger_N_per_m", report->options->finger_N_per_m);
+    dea_json_add(source, "voltage_V", design != NULL ? dea_design_highest_V(design) : 0);
   }
   if (status == DEA_OK && json_array_size(sources) > 0) {
     dea_section_begin(report, "explorer", run->number, "Explorer");

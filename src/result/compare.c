@@ -150,8 +150,8 @@ bool dea_samples_have_std(const struct dea_samples *samples)
 // Misfits -----------------------------------------------------------------------------------------
 
 /* A misfit with room for that many points, all in memory. */
-static dea_status make_misfit(struct dea_arena *memory, int column, size_t capacity,
-                              struct dea_misfit *out)
+static dea_status build_misfit(struct dea_arena *memory, int column, size_t capacity,
+                               struct dea_misfit *out)
 {
   *out = (struct dea_misfit){.column = column, .quantity = dea_column_at(memory->ctx, column)};
   double **arrays[] = {&out->at, &out->a, &out->b, &out->a_std, &out->b_std};
@@ -251,7 +251,7 @@ dea_status dea_misfit_compute(struct dea_arena *memory, int column, const struct
                               const struct dea_samples *b, const struct dea_reading *reading,
                               struct dea_misfit *out)
 {
-  DEA_TRY(memory->ctx, make_misfit(memory, column, b->count, out));
+  DEA_TRY(memory->ctx, build_misfit(memory, column, b->count, out));
   for (size_t i = 0; i < b->count; i++) {
     const double at = within(b->at[i], a, reading->margin);
     if (!is_near_jump(a, b->at[i], reading->jump)) {
@@ -295,7 +295,7 @@ static dea_status compare_points(struct dea_arena *memory, const struct dea_curv
                                  const struct dea_curve *b, const struct dea_load_point *b_std,
                                  int column, struct dea_misfit *out)
 {
-  DEA_TRY(memory->ctx, make_misfit(memory, column, a->count, out));
+  DEA_TRY(memory->ctx, build_misfit(memory, column, a->count, out));
   for (size_t i = 0; i < a->count; i++) {
     add_point(out, a->points[i].voltage_V, dea_point_get(&a->points[i], column),
               a->std != NULL ? dea_point_get(&a->std[i], column) : NAN,

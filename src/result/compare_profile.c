@@ -75,9 +75,9 @@ static size_t fill_half(const struct blend *b, enum dea_half half, double *x, do
   return largest > 0.0 && count > 1 ? count : 0;
 }
 
-dea_status dea_film_line_make(struct dea_arena *memory, const struct dea_result *result,
-                              const char *model, double voltage_V, enum dea_half half,
-                              struct dea_film_line *out)
+dea_status dea_film_line_build(struct dea_arena *memory, const struct dea_result *result,
+                               const char *model, double voltage_V, enum dea_half half,
+                               struct dea_film_line *out)
 {
   struct blend b;
   *out = (struct dea_film_line){0};

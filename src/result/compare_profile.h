@@ -17,9 +17,9 @@ struct dea_film_line {
 
 /* Line of a model of the result at a voltage: of the profile within 0.5 % of it, or linear in the
  * voltage between the first two neighbours that have it between them. */
-dea_status dea_film_line_make(struct dea_arena *memory, const struct dea_result *result,
-                              const char *model, double voltage_V, enum dea_half half,
-                              struct dea_film_line *out);
+dea_status dea_film_line_build(struct dea_arena *memory, const struct dea_result *result,
+                               const char *model, double voltage_V, enum dea_half half,
+                               struct dea_film_line *out);
 
 /* line minus measured at the measured places, on both sides of the centre; those beyond the film
  * are left out. */

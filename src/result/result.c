@@ -149,8 +149,8 @@ dea_status dea_result_get_table(struct dea_context *ctx, struct dea_result *resu
   return dea_result_add_table(ctx, result, type, model, 0, out);
 }
 
-dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *result,
-                                 struct dea_result_table *table)
+dea_status dea_result_adopt_table(struct dea_context *ctx, struct dea_result *result,
+                                  struct dea_result_table *table)
 {
   struct dea_result_table *to;
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &table->type, table->model, table->width, &to));
@@ -164,8 +164,8 @@ dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *res
 }
 
 /* Room for one more of *items; on failure everything stays as it was. */
-static dea_status make_room(struct dea_context *ctx, void **items, size_t count, size_t *capacity,
-                            size_t size)
+static dea_status reserve(struct dea_context *ctx, void **items, size_t count, size_t *capacity,
+                          size_t size)
 {
   if (count < *capacity) {
     return DEA_OK;
@@ -182,7 +182,7 @@ dea_status dea_curve_add_point(struct dea_context *ctx, struct dea_curve *curve,
                                const struct dea_load_point *point)
 {
   void *points = curve->points;
-  DEA_TRY(ctx, make_room(ctx, &points, curve->count, &curve->capacity, sizeof *curve->points));
+  DEA_TRY(ctx, reserve(ctx, &points, curve->count, &curve->capacity, sizeof *curve->points));
   curve->points = points;
   curve->memory.ctx = ctx;
   struct dea_monitor_values *monitors = dea_monitor_values_copy(&curve->memory, point->monitors);
@@ -197,7 +197,7 @@ dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
 {
   void *events = curve->events;
   DEA_TRY(ctx,
-          make_room(ctx, &events, curve->event_count, &curve->event_room, sizeof *curve->events));
+          reserve(ctx, &events, curve->event_count, &curve->event_room, sizeof *curve->events));
   curve->events = events;
   curve->memory.ctx = ctx;
   struct dea_monitor_values *monitors =
@@ -281,8 +281,8 @@ dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *re
   if (profile->count == 0) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, make_room(ctx, &profiles, result->profile_count, &result->profile_room,
-                         sizeof *result->profiles));
+  DEA_TRY(ctx, reserve(ctx, &profiles, result->profile_count, &result->profile_room,
+                       sizeof *result->profiles));
   result->profiles = profiles;
   DEA_TRY(ctx,
           copy_profile(ctx, model, voltage_V, profile, &result->profiles[result->profile_count]));
@@ -449,8 +449,8 @@ dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *re
   }
   void *surfaces = result->surfaces;
   if (status == DEA_OK) {
-    status = make_room(ctx, &surfaces, result->surface_count, &result->surface_room,
-                       sizeof *result->surfaces);
+    status = reserve(ctx, &surfaces, result->surface_count, &result->surface_room,
+                     sizeof *result->surfaces);
   }
   if (status != DEA_OK) {
     dea_field_mesh_destroy(ctx, mesh);

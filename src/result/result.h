@@ -133,8 +133,8 @@ dea_status dea_result_get_table(struct dea_context *ctx, struct dea_result *resu
                                 struct dea_result_table **out);
 /* Moves a table here, to the place of the model's of that study and name; it leaves an empty one.
  * On failure it stays where it is. */
-dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *result,
-                                 struct dea_result_table *table);
+dea_status dea_result_adopt_table(struct dea_context *ctx, struct dea_result *result,
+                                  struct dea_result_table *table);
 /* Table of that model, study and name, or NULL; lent. */
 const struct dea_result_table *dea_result_find_table(const struct dea_result *result,
                                                      const char *model, const char *study,

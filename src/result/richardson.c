@@ -183,7 +183,7 @@ static const struct dea_curve *longest(const struct dea_convergence *c)
   return best;
 }
 
-static struct looked look(const struct dea_context *ctx, const struct dea_convergence *c)
+static struct looked inspect(const struct dea_context *ctx, const struct dea_convergence *c)
 {
   struct looked out = {.judged = 0};
   const struct dea_curve *finest = &c->meshes[c->mesh_count - 1]->curve;
@@ -216,7 +216,7 @@ dea_status dea_convergence_create(struct dea_context *ctx, const struct dea_resu
     return DEA_OK;
   }
   const struct dea_curve *curve = longest(&found);
-  const struct looked looked = look(ctx, &found);
+  const struct looked looked = inspect(ctx, &found);
   struct dea_convergence *made = dea_alloc(ctx, 1, sizeof *made);
   found.rows = dea_alloc(ctx, looked.count * curve->count, sizeof *found.rows);
   if (made == NULL || found.rows == NULL) {

@@ -76,7 +76,7 @@ void dea_result_table_free(struct dea_context *ctx, struct dea_result_table *tab
   table->row_count = table->capacity = 0;
 }
 
-static dea_status make_room(struct dea_context *ctx, struct dea_result_table *table)
+static dea_status reserve(struct dea_context *ctx, struct dea_result_table *table)
 {
   if (table->row_count < table->capacity) {
     return DEA_OK;
@@ -92,7 +92,7 @@ static dea_status make_room(struct dea_context *ctx, struct dea_result_table *ta
 dea_status dea_result_table_add_row(struct dea_context *ctx, struct dea_result_table *table,
                                     const struct dea_result_table_value *values)
 {
-  DEA_TRY(ctx, make_room(ctx, table));
+  DEA_TRY(ctx, reserve(ctx, table));
   struct dea_cell *row = table->cells + table->row_count * table->stride;
   for (size_t i = 0; i < table->stride; i++) {
     row[i] = (struct dea_cell){.number = NAN};

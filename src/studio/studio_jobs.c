@@ -81,7 +81,7 @@ static pid_t start(const char *program, int folder, const struct dea_studio_line
   return pid;
 }
 
-static void take(int file, struct dea_bytes *out)
+static void read_all(int file, struct dea_bytes *out)
 {
   char chunk[16384];
   ssize_t got;
@@ -93,9 +93,9 @@ static void take(int file, struct dea_bytes *out)
   out->length -= !out->failed;
 }
 
-dea_status dea_studio_ask(struct dea_context *ctx, const char *program, int folder,
-                          const struct dea_studio_line *line, double limit_s, struct dea_bytes *out,
-                          struct dea_bytes *err, int *code)
+dea_status dea_studio_run_command(struct dea_context *ctx, const char *program, int folder,
+                                  const struct dea_studio_line *line, double limit_s,
+                                  struct dea_bytes *out, struct dea_bytes *err, int *code)
 {
   const int files[2] = {memfd_create("out", MFD_CLOEXEC), memfd_create("err", MFD_CLOEXEC)};
   const pid_t pid =
@@ -114,7 +114,7 @@ dea_status dea_studio_ask(struct dea_context *ctx, const char *program, int fold
   }
   for (size_t i = 0; i < 2; i++) {
     if (files[i] >= 0) {
-      take(files[i], i == 0 ? out : err);
+      read_all(files[i], i == 0 ? out : err);
       close(files[i]);
     }
   }
@@ -179,7 +179,7 @@ struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const ch
 }
 
 /* Makes room in the list: the oldest that is over goes. */
-static bool make_room(struct dea_studio_jobs *jobs)
+static bool reserve(struct dea_studio_jobs *jobs)
 {
   for (size_t i = 0; i < jobs->count && jobs->count == JOBS_MAX; i++) {
     if (jobs->jobs[i].state > RUNNING) {
@@ -200,7 +200,7 @@ int dea_studio_jobs_add(struct dea_studio_jobs *jobs, const char *action, const 
     const struct job *other = &jobs->jobs[i];
     free_place = free_place && !(other->state <= RUNNING && strcmp(other->output, output) == 0);
   }
-  if (free_place && !line->full && make_room(jobs)) {
+  if (free_place && !line->full && reserve(jobs)) {
     struct job *job = &jobs->jobs[jobs->count++];
     *job = (struct job){.id = ++jobs->last_id, .line = *line, .terminal = -1};
     snprintf(job->action, sizeof job->action, "%s", action);
@@ -215,7 +215,7 @@ int dea_studio_jobs_add(struct dea_studio_jobs *jobs, const char *action, const 
 
 /* Tells one that runs to end: its own end first, which keeps what it has, then that of all that it
  * has started. */
-static void tell(struct job *job)
+static void notify(struct job *job)
 {
   job->told++;
   kill(job->told > 1 ? -job->process : job->process, job->told > 1 ? SIGKILL : SIGTERM);
@@ -231,7 +231,7 @@ bool dea_studio_jobs_stop(struct dea_studio_jobs *jobs, int id)
       job->state = STOPPED;
       found = true;
     } else if (job->id == id && job->state == RUNNING) {
-      tell(job);
+      notify(job);
       found = true;
     }
   }
@@ -328,7 +328,7 @@ static void keep_line(struct job *job)
            job->half);
 }
 
-static void hear_byte(struct job *job, char byte)
+static void receive_byte(struct job *job, char byte)
 {
   static const char erase[] = "\033[K";
   if (byte == '\r' || byte == '\n') {
@@ -345,13 +345,13 @@ static void hear_byte(struct job *job, char byte)
 }
 
 /* The line that has not ended yet is progress, too: the next one comes with its own start. */
-static void hear(struct job *job)
+static void receive(struct job *job)
 {
   char chunk[4096];
   ssize_t got;
   while ((got = read(job->terminal, chunk, sizeof chunk)) > 0) {
     for (ssize_t i = 0; i < got; i++) {
-      hear_byte(job, chunk[i]);
+      receive_byte(job, chunk[i]);
     }
   }
   if (job->half_length > 3 && memcmp(job->half, "\033[K", 3) == 0) {
@@ -359,11 +359,11 @@ static void hear(struct job *job)
   }
 }
 
-static void look_at(struct job *job)
+static void inspect(struct job *job)
 {
   int state = 0;
   const bool over = waitpid(job->process, &state, WNOHANG) == job->process;
-  hear(job);
+  receive(job);
   if (over) {
     job->code = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
     job->state = job->told > 0 ? STOPPED : job->code == 0 ? DONE : FAILED;
@@ -388,7 +388,7 @@ void dea_studio_jobs_turn(struct dea_studio_jobs *jobs)
       begin(jobs, job);
       running += job->state == RUNNING;
     } else if (job->state == RUNNING) {
-      look_at(job);
+      inspect(job);
     }
     if (job->state == RUNNING) {
       wait[count++] = (struct pollfd){.fd = job->terminal, .events = POLLIN};
@@ -409,17 +409,17 @@ void dea_studio_jobs_destroy(struct dea_context *ctx, struct dea_studio_jobs *jo
   }
   for (size_t i = 0; i < jobs->count; i++) {
     if (jobs->jobs[i].state == RUNNING) {
-      tell(&jobs->jobs[i]);
+      notify(&jobs->jobs[i]);
     }
   }
   for (size_t i = 0; i < jobs->count; i++) {
     struct job *job = &jobs->jobs[i];
     const double began_s = dea_clock_s();
     while (job->state == RUNNING) {
-      look_at(job);
+      inspect(job);
       dea_clock_wait(0.01);
       if (job->told == 1 && dea_clock_s() - began_s > PATIENCE_S) {
-        tell(job);
+        notify(job);
       }
     }
   }

@@ -19,9 +19,9 @@ void dea_studio_line_show(const struct dea_studio_line *line, struct dea_text *o
 
 /* Runs the command in the folder and waits for it, at most limit_s. out, err: what it says. *code:
  * its exit code. DEA_E_TOOL where it cannot be started, takes too long or dies. */
-dea_status dea_studio_ask(struct dea_context *ctx, const char *program, int folder,
-                          const struct dea_studio_line *line, double limit_s, struct dea_bytes *out,
-                          struct dea_bytes *err, int *code);
+dea_status dea_studio_run_command(struct dea_context *ctx, const char *program, int folder,
+                                  const struct dea_studio_line *line, double limit_s,
+                                  struct dea_bytes *out, struct dea_bytes *err, int *code);
 
 struct dea_studio_jobs;
 

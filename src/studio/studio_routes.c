@@ -20,14 +20,14 @@ static const char json_mime[] = "application/json", html_mime[] = "text/html; ch
 /* What a route works with. */
 struct work {
   struct dea_context *ctx;
-  struct dea_studio_room *room;
+  struct dea_studio_folder *room;
   const struct dea_studio_request *request;
   struct dea_studio_reply *reply;
 };
 
 // Replies -----------------------------------------------------------------------------------------
 
-static void give(struct work *w, int status, const char *type, const char *bytes, size_t length)
+static void respond(struct work *w, int status, const char *type, const char *bytes, size_t length)
 {
   w->reply->status = status;
   w->reply->type = type;
@@ -36,24 +36,24 @@ static void give(struct work *w, int status, const char *type, const char *bytes
 }
 
 /* Takes it. */
-static void give_json(struct work *w, int status, json_t *json)
+static void respond_json(struct work *w, int status, json_t *json)
 {
   char *text = json != NULL ? json_dumps(json, JSON_COMPACT) : NULL;
-  give(w, text != NULL ? status : 500, json_mime, text != NULL ? text : "{}",
-       text != NULL ? strlen(text) : 2);
+  respond(w, text != NULL ? status : 500, json_mime, text != NULL ? text : "{}",
+          text != NULL ? strlen(text) : 2);
   free(text);
   json_decref(json);
 }
 
 /* {error: text}; the texts of findings go before the message. */
-static void give_error(struct work *w, int status, const char *text)
+static void respond_error(struct work *w, int status, const char *text)
 {
-  give_json(w, status, json_pack("{s:s}", "error", text));
+  respond_json(w, status, json_pack("{s:s}", "error", text));
 }
 
 /* What a file or a result says against it is an answer, too: browsers note what has no status 200.
  */
-static void give_failure(struct work *w)
+static void respond_failure(struct work *w)
 {
   size_t count;
   const struct dea_finding *findings = dea_finding_get(w->ctx, &count);
@@ -65,7 +65,7 @@ static void give_failure(struct work *w)
     }
   }
   dea_text_add(&text, "%s", dea_context_message(w->ctx));
-  give_error(w, 200, dea_text_get(&text));
+  respond_error(w, 200, dea_text_get(&text));
   dea_text_free(&text);
 }
 
@@ -82,7 +82,7 @@ static const char *file_argument(struct work *w, const char *name)
 {
   const char *file = argument(w, name, 0);
   if (file == NULL || !dea_studio_name_good(file, false)) {
-    give_error(w, 400, "that is no name of a file in this folder");
+    respond_error(w, 400, "that is no name of a file in this folder");
     return NULL;
   }
   return file;
@@ -115,21 +115,21 @@ static void add_file(struct dea_studio_line *line, const char *name)
 
 static void get_page(struct work *w)
 {
-  give(w, 200, html_mime, dea_asset_studio_page, dea_asset_studio_page_length);
+  respond(w, 200, html_mime, dea_asset_studio_page, dea_asset_studio_page_length);
 }
 
 static void get_style(struct work *w)
 {
-  give(w, 200, "text/css; charset=utf-8", dea_asset_studio_style, dea_asset_studio_style_length);
+  respond(w, 200, "text/css; charset=utf-8", dea_asset_studio_style, dea_asset_studio_style_length);
 }
 
 static void get_script(struct work *w)
 {
-  give(w, 200, "text/javascript; charset=utf-8", dea_asset_studio_script,
-       dea_asset_studio_script_length);
+  respond(w, 200, "text/javascript; charset=utf-8", dea_asset_studio_script,
+          dea_asset_studio_script_length);
 }
 
-json_t *dea_studio_state(struct dea_studio_room *room)
+json_t *dea_studio_state(struct dea_studio_folder *room)
 {
   json_t *state = dea_studio_list(room->folder);
   json_object_set_new(state, "folder", json_string(room->path));
@@ -141,7 +141,7 @@ json_t *dea_studio_state(struct dea_studio_room *room)
 
 static void get_state(struct work *w)
 {
-  give_json(w, 200, dea_studio_state(w->room));
+  respond_json(w, 200, dea_studio_state(w->room));
 }
 
 // Designs and tables ------------------------------------------------------------------------------
@@ -170,10 +170,10 @@ static void get_design(struct work *w)
   json_t *json = file_json(w, name);
   if (json_object_get(json, "text") == NULL) {
     json_decref(json);
-    give_error(w, 404, "there is no such file, or it is no text in UTF-8");
+    respond_error(w, 404, "there is no such file, or it is no text in UTF-8");
     return;
   }
-  give_json(w, 200, json);
+  respond_json(w, 200, json);
 }
 
 /* Whether the name is of a regular file or of nothing. */
@@ -185,14 +185,14 @@ static bool can_write(const struct work *w, const char *name)
 
 /* Writes the body where the file is still the version that the page knows ("": none is there); else
  * says what is there: {changed, text, version}. */
-static void put_file(struct work *w)
+static void store_file(struct work *w)
 {
   const char *name = file_argument(w, "name"), *known = argument(w, "version", 0);
   if (name == NULL) {
     return;
   }
   if (!can_write(w, name)) {
-    give_error(w, 403, "a folder or a link has that name");
+    respond_error(w, 403, "a folder or a link has that name");
     return;
   }
   pthread_mutex_lock(&w->room->write_lock);
@@ -202,16 +202,16 @@ static void put_file(struct work *w)
     json_t *other =
         there != NULL ? json_incref(there) : json_pack("{s:s, s:s}", "text", "", "version", "");
     json_object_set_new(other, "changed", json_true());
-    give_json(w, 200, other); // no failure, which a browser would note
+    respond_json(w, 200, other); // no failure, which a browser would note
   } else {
     char now[65];
     char *path = path_of(w, name);
     dea_sha256_hex(w->request->body, w->request->body_length, now);
     if (path != NULL &&
         dea_file_write(w->ctx, path, w->request->body, w->request->body_length) == DEA_OK) {
-      give_json(w, 200, json_pack("{s:s}", "version", now));
+      respond_json(w, 200, json_pack("{s:s}", "version", now));
     } else {
-      give_failure(w);
+      respond_failure(w);
     }
     dea_free(w->ctx, path);
   }
@@ -236,7 +236,7 @@ static void get_file(struct work *w)
   w->reply->foreign = true;
   if (name == NULL || !dea_studio_name_good(name, true) ||
       dea_studio_read(w->ctx, w->room->folder, name, FILE_MAX, &w->reply->body) != DEA_OK) {
-    give_error(w, 404, "there is no such file in this folder");
+    respond_error(w, 404, "there is no such file in this folder");
     return;
   }
   for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
@@ -252,9 +252,9 @@ static void get_list(struct work *w)
   const char *name = file_argument(w, "name");
   json_t *list = name != NULL ? dea_studio_list_in(w->room->folder, name) : NULL;
   if (name != NULL && list == NULL) {
-    give_error(w, 404, "there is no such folder");
+    respond_error(w, 404, "there is no such folder");
   } else if (name != NULL) {
-    give_json(w, 200, list);
+    respond_json(w, 200, list);
   }
 }
 
@@ -264,13 +264,13 @@ enum { QUESTION_S = 30 };
 
 /* What a command says, as JSON, into `key` of an answer that shows the command; what is no JSON is
  * an error. */
-static json_t *ask(struct work *w, const struct dea_studio_line *line, const char *key)
+static json_t *find_command(struct work *w, const struct dea_studio_line *line, const char *key)
 {
   struct dea_bytes out = {.ctx = w->ctx}, err = {.ctx = w->ctx};
   struct dea_text shown = {.ctx = w->ctx};
   int code = -1;
-  const dea_status status = dea_studio_ask(w->ctx, w->room->options->program, w->room->folder, line,
-                                           QUESTION_S, &out, &err, &code);
+  const dea_status status = dea_studio_run_command(
+      w->ctx, w->room->options->program, w->room->folder, line, QUESTION_S, &out, &err, &code);
   json_t *json = json_object(), *said = NULL;
   dea_studio_line_show(line, &shown);
   if (status == DEA_OK) {
@@ -301,8 +301,8 @@ static char *scratch_name(struct work *w, const char *ending)
 }
 
 /* "dea check DESIGN --svg FILE", or of another command. */
-static void make_line(struct dea_studio_line *line, const char *command, const char *design,
-                      const char *option, const char *file)
+static void build_line(struct dea_studio_line *line, const char *command, const char *design,
+                       const char *option, const char *file)
 {
   *line = (struct dea_studio_line){.count = 0};
   dea_studio_line_add(line, command);
@@ -312,20 +312,20 @@ static void make_line(struct dea_studio_line *line, const char *command, const c
 }
 
 /* What a command says of a design, and the file that it writes: {COMMAND, ENDING, command}. */
-static void ask_file(struct work *w, const char *command, const char *design, const char *shown,
-                     const char *option, const char *ending)
+static void query_file(struct work *w, const char *command, const char *design, const char *shown,
+                       const char *option, const char *ending)
 {
   struct dea_studio_line line;
   struct dea_text by_hand = {.ctx = w->ctx};
   char *file = scratch_name(w, ending), *bytes = NULL, name[280];
   size_t length;
   if (file == NULL) {
-    give_failure(w);
+    respond_failure(w);
     return;
   }
-  make_line(&line, command, design, option, file);
+  build_line(&line, command, design, option, file);
   dea_studio_line_add(&line, "--json");
-  json_t *json = ask(w, &line, command);
+  json_t *json = find_command(w, &line, command);
   if (dea_path_exists(file) &&
       dea_file_read(w->ctx, file, DEA_STUDIO_BODY_MAX, &bytes, &length) == DEA_OK) {
     json_object_set_new(json, ending, json_stringn(bytes, length));
@@ -334,11 +334,11 @@ static void ask_file(struct work *w, const char *command, const char *design, co
   unlink(file);
   dea_free(w->ctx, file);
   snprintf(name, sizeof name, "%.*s.%s", (int)strcspn(shown, "."), shown, ending);
-  make_line(&line, command, shown, option, name);
+  build_line(&line, command, shown, option, name);
   dea_studio_line_show(&line, &by_hand);
   json_object_set_new(json, "command", json_string(dea_text_get(&by_hand)));
   dea_text_free(&by_hand);
-  give_json(w, 200, json);
+  respond_json(w, 200, json);
 }
 
 static void get_of_design(struct work *w, const char *command, const char *option,
@@ -346,9 +346,9 @@ static void get_of_design(struct work *w, const char *command, const char *optio
 {
   const char *name = file_argument(w, "name");
   if (name != NULL && can_write(w, name)) { // a link would lead out
-    ask_file(w, command, name, name, option, ending);
+    query_file(w, command, name, name, option, ending);
   } else if (name != NULL) {
-    give_error(w, 404, "there is no such file in this folder");
+    respond_error(w, 404, "there is no such file in this folder");
   }
 }
 
@@ -375,7 +375,7 @@ static void get_schema(struct work *w)
       dea_studio_line_add(&line, kinds[i]);
     }
   }
-  give_json(w, 200, ask(w, &line, "schema"));
+  respond_json(w, 200, find_command(w, &line, "schema"));
 }
 
 /* Adds the runs and the table that the address names, or those of a body; false after an answer. */
@@ -388,13 +388,13 @@ static bool add_runs(struct work *w, const json_t *runs, const char *measured,
   {
     const char *name = json_string_value(run);
     if (name == NULL || !is_run(w, name)) {
-      give_error(w, 404, "there is no such run in this folder");
+      respond_error(w, 404, "there is no such run in this folder");
       return false;
     }
     add_file(line, name);
   }
   if (measured != NULL && (!dea_studio_name_good(measured, false) || !can_write(w, measured))) {
-    give_error(w, 404, "there is no such table in this folder");
+    respond_error(w, 404, "there is no such table in this folder");
     return false;
   }
   if (measured != NULL && option != NULL) {
@@ -412,13 +412,13 @@ static void get_compare(struct work *w)
   struct dea_studio_line line = {.count = 0};
   dea_studio_line_add(&line, "compare");
   if (json_array_size(json_object_get(w->request->arguments, "run")) == 0) {
-    give_error(w, 400, "runs are needed");
+    respond_error(w, 400, "runs are needed");
     return;
   }
   if (add_runs(w, json_object_get(w->request->arguments, "run"), argument(w, "measured", 0), &line,
                NULL)) {
     dea_studio_line_add(&line, "--json");
-    give_json(w, 200, ask(w, &line, "compare"));
+    respond_json(w, 200, find_command(w, &line, "compare"));
   }
 }
 
@@ -433,7 +433,7 @@ static void show_runs(struct work *w, enum dea_studio_view view)
     return;
   }
   if (asked == 0 || asked > DEA_STUDIO_RUNS_MAX) {
-    give_error(w, 400, "1 to 6 runs can be shown at a time");
+    respond_error(w, 400, "1 to 6 runs can be shown at a time");
     return;
   }
   struct dea_text out = {.ctx = w->ctx};
@@ -443,10 +443,10 @@ static void show_runs(struct work *w, enum dea_studio_view view)
                                             json_object_get(lists, "sweeps"), view, &out);
   pthread_mutex_unlock(&w->room->results_lock);
   if (status == DEA_OK && !out.failed) {
-    give(w, 200, html_mime, dea_text_get(&out), out.length);
+    respond(w, 200, html_mime, dea_text_get(&out), out.length);
     w->reply->foreign = view != DEA_STUDIO_CURVES;
   } else {
-    give_failure(w);
+    respond_failure(w);
   }
   json_decref(lists);
   dea_text_free(&out);
@@ -477,7 +477,7 @@ static const struct dea_studio_example *example_argument(struct work *w)
       return &w->room->options->examples[i];
     }
   }
-  give_error(w, 404, "there is no such example");
+  respond_error(w, 404, "there is no such example");
   return NULL;
 }
 
@@ -508,14 +508,14 @@ static void get_examples(struct work *w)
       dea_free(w->ctx, bytes);
     }
   }
-  give_json(w, 200, list);
+  respond_json(w, 200, list);
 }
 
 static void get_picture(struct work *w)
 {
   const struct dea_studio_example *example = example_argument(w);
   if (example != NULL) {
-    ask_file(w, "check", example->path, example->name, "--svg", "svg");
+    query_file(w, "check", example->path, example->name, "--svg", "svg");
   }
 }
 
@@ -527,9 +527,9 @@ static bool copy_text(struct work *w, const char *text, size_t length, const cha
   bool done = false;
   pthread_mutex_lock(&w->room->write_lock);
   if (fstatat(w->room->folder, to, &file, AT_SYMLINK_NOFOLLOW) == 0) {
-    give_error(w, 409, "a file of that name is there");
+    respond_error(w, 409, "a file of that name is there");
   } else if (path == NULL || dea_file_write(w->ctx, path, text, length) != DEA_OK) {
-    give_failure(w);
+    respond_failure(w);
   } else {
     done = true;
   }
@@ -569,12 +569,12 @@ static void post_copy(struct work *w)
     return;
   }
   if (dea_file_read(w->ctx, example->path, DEA_STUDIO_BODY_MAX, &bytes, &length) != DEA_OK) {
-    give_failure(w);
+    respond_failure(w);
     return;
   }
   if (copy_text(w, bytes, length, to)) {
     copy_beside(w, example, bytes);
-    give_json(w, 200, json_pack("{s:s}", "name", to));
+    respond_json(w, 200, json_pack("{s:s}", "name", to));
   }
   dea_free(w->ctx, bytes);
 }
@@ -613,15 +613,15 @@ static const char *job_output(struct work *w, const char *file, const char *outp
       !dea_studio_name_good(output, false) ||
       (fstatat(w->room->folder, output, &info, AT_SYMLINK_NOFOLLOW) == 0 &&
        !S_ISDIR(info.st_mode))) {
-    give_error(w, 400, "a file of this folder and a folder for what comes of it are needed");
+    respond_error(w, 400, "a file of this folder and a folder for what comes of it are needed");
     return NULL;
   }
   return output;
 }
 
 /* One of the jobs that read a file and write a folder: {action, file, output, ...}. */
-static bool make_file_job(struct work *w, const json_t *body, const char *action,
-                          struct dea_studio_line *line)
+static bool create_file_job(struct work *w, const json_t *body, const char *action,
+                            struct dea_studio_line *line)
 {
   const char *output = job_output(w, text_of(body, "file"), text_of(body, "output"));
   if (output == NULL) {
@@ -640,18 +640,18 @@ static bool make_file_job(struct work *w, const json_t *body, const char *action
     dea_studio_line_add(line, "--resume");
   }
   if (run && !add_models(line, json_object_get(body, "models"))) {
-    give_error(w, 400, "names of models are small letters, digits and '-'");
+    respond_error(w, 400, "names of models are small letters, digits and '-'");
     return false;
   }
   return true;
 }
 
 /* A report of runs, into the first one's folder: {action, runs, measured}. */
-static bool make_report(struct work *w, const json_t *body, struct dea_studio_line *line)
+static bool build_report(struct work *w, const json_t *body, struct dea_studio_line *line)
 {
   const json_t *runs = json_object_get(body, "runs");
   if (json_array_size(runs) == 0 || json_array_size(runs) > DEA_STUDIO_RUNS_MAX) {
-    give_error(w, 400, "1 to 6 runs make a report");
+    respond_error(w, 400, "1 to 6 runs make a report");
     return false;
   }
   dea_studio_line_add(line, "report");
@@ -670,20 +670,21 @@ static void post_job(struct work *w)
     subject = json_string_value(json_array_get(json_object_get(body, "runs"), 0));
     output = subject;
     known = true;
-    made = make_report(w, body, &line);
+    made = build_report(w, body, &line);
   }
   for (size_t i = 0; action != NULL && i < sizeof actions / sizeof actions[0]; i++) {
     if (strcmp(action, actions[i]) == 0) {
       known = true;
-      made = make_file_job(w, body, action, &line);
+      made = create_file_job(w, body, action, &line);
     }
   }
   if (!known) {
-    give_error(w, 400, "actions are run, fab, fit, sweep, optimise and report");
+    respond_error(w, 400, "actions are run, fab, fit, sweep, optimise and report");
   } else if (made) {
     const int id = dea_studio_jobs_add(w->room->jobs, action, subject, output, &line);
-    give_json(w, 200,
-              id > 0 ? json_pack("{s:i}", "id", id)
+    respond_json(w, 200,
+                 id > 0
+                     ? json_pack("{s:i}", "id", id)
                      : json_pack("{s:s}", "error", "another one writes there, or too many wait"));
   }
   json_decref(body);
@@ -695,15 +696,15 @@ static void post_stop(struct work *w)
   const int id = (int)json_integer_value(json_object_get(body, "id"));
   json_decref(body);
   if (dea_studio_jobs_stop(w->room->jobs, id)) {
-    give_json(w, 200, json_object());
+    respond_json(w, 200, json_object());
   } else {
-    give_error(w, 404, "that does not run");
+    respond_error(w, 404, "that does not run");
   }
 }
 
 // -------------------------------------------------------------------------------------------------
 
-void dea_studio_answer(struct dea_context *ctx, struct dea_studio_room *room,
+void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *room,
                        const struct dea_studio_request *request, struct dea_studio_reply *reply)
 {
   static const struct {
@@ -714,7 +715,7 @@ void dea_studio_answer(struct dea_context *ctx, struct dea_studio_room *room,
                 {"GET", "studio.js", get_script},
                 {"GET", "state", get_state},
                 {"GET", "design", get_design},
-                {"PUT", "design", put_file},
+                {"PUT", "design", store_file},
                 {"GET", "check", get_check},
                 {"GET", "mesh", get_mesh},
                 {"GET", "schema", get_schema},
@@ -740,5 +741,5 @@ void dea_studio_answer(struct dea_context *ctx, struct dea_studio_room *room,
       }
     }
   }
-  give_error(&w, path_known ? 405 : 404, path_known ? "not that way" : "there is no such thing");
+  respond_error(&w, path_known ? 405 : 404, path_known ? "not that way" : "there is no such thing");
 }

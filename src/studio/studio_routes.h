@@ -7,7 +7,7 @@
 #include <pthread.h>
 
 /* What all of its threads share. */
-struct dea_studio_room {
+struct dea_studio_folder {
   const struct dea_studio_options *options; // lent
   const char *path;                         // of the folder, without links; lent
   const char *scratch;                      // a folder for files on the way; lent
@@ -37,8 +37,8 @@ struct dea_studio_reply {
 enum { DEA_STUDIO_BODY_MAX = 8 << 20 };
 
 /* Fills a reply, whose body has its context set; an error too is one. */
-void dea_studio_answer(struct dea_context *ctx, struct dea_studio_room *room,
+void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *room,
                        const struct dea_studio_request *request, struct dea_studio_reply *reply);
 /* What there is: {folder, open, designs, runs, tables, folders, jobs}; NULL when memory is short.
  */
-json_t *dea_studio_state(struct dea_studio_room *room);
+json_t *dea_studio_state(struct dea_studio_folder *room);

@@ -35,7 +35,7 @@ static const double body_patience_s = 3; // for all of a request's body
 struct dea_studio {
   struct dea_context *ctx;
   struct dea_studio_options options;
-  struct dea_studio_room room;
+  struct dea_studio_folder room;
   struct mg_context *server;
   char *path;               // of the folder
   char scratch[512];        // of files on the way
@@ -206,7 +206,7 @@ static bool read_body(struct dea_context *ctx, struct mg_connection *connection,
 /* A question and where its answer goes. */
 struct task {
   struct dea_context *ctx;
-  struct dea_studio_room *room;
+  struct dea_studio_folder *room;
   const struct dea_studio_request *request;
   struct dea_studio_reply *reply;
 };
@@ -288,7 +288,7 @@ static int on_message(const struct mg_connection *connection, const char *messag
 
 // Beginning and end -------------------------------------------------------------------------------
 
-static dea_status make_secret(struct dea_studio *studio)
+static dea_status create_secret(struct dea_studio *studio)
 {
   unsigned char bytes[SECRET_BYTES];
   if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes) {
@@ -301,7 +301,7 @@ static dea_status make_secret(struct dea_studio *studio)
 }
 
 /* The folder for files on the way, which only this user can enter. */
-static dea_status make_scratch(struct dea_studio *studio)
+static dea_status create_scratch(struct dea_studio *studio)
 {
   const char *runtime = getenv("XDG_RUNTIME_DIR"), *temporary = getenv("TMPDIR");
   const char *in = runtime != NULL && runtime[0] != '\0'       ? runtime
@@ -356,7 +356,7 @@ static dea_status listen_at(struct dea_studio *studio)
   return DEA_OK;
 }
 
-static dea_status make_doorway(struct dea_studio *studio)
+static dea_status open_listener(struct dea_studio *studio)
 {
   char page[512];
   snprintf(studio->doorway, sizeof studio->doorway, "%s/studio.html", studio->scratch);
@@ -378,8 +378,8 @@ static dea_status begin(struct dea_studio *studio)
     return dea_fail(ctx, DEA_E_IO, "cannot open the folder %s: %s", studio->options.folder,
                     strerror(errno));
   }
-  DEA_TRY(ctx, make_secret(studio));
-  DEA_TRY(ctx, make_scratch(studio));
+  DEA_TRY(ctx, create_secret(studio));
+  DEA_TRY(ctx, create_scratch(studio));
   studio->room.options = &studio->options;
   studio->room.path = studio->path;
   studio->room.scratch = studio->scratch;
@@ -388,7 +388,7 @@ static dea_status begin(struct dea_studio *studio)
     return dea_context_status(ctx);
   }
   DEA_TRY(ctx, listen_at(studio));
-  return make_doorway(studio);
+  return open_listener(studio);
 }
 
 dea_status dea_studio_start(struct dea_context *ctx, const struct dea_studio_options *options,

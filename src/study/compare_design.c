@@ -134,7 +134,7 @@ static double shown_z(double z_m)
   return fabs(z_m) < 1e-12 ? 0 : z_m;
 }
 
-static dea_status put_design(struct dea_context *ctx, const struct dea_variant *v, size_t index,
+static dea_status add_design(struct dea_context *ctx, const struct dea_variant *v, size_t index,
                              struct dea_result_table *table)
 {
   const struct dea_load_point none = dea_load_point_empty();
@@ -153,7 +153,7 @@ static dea_status put_design(struct dea_context *ctx, const struct dea_variant *
                        DEA_TEXT_CELL(v->curve.stopped));
 }
 
-static dea_status put_monitors(struct dea_context *ctx, const char *model,
+static dea_status add_monitors(struct dea_context *ctx, const char *model,
                                const struct dea_variant *v, struct dea_result *result)
 {
   int columns[HEADLINES_MAX];
@@ -176,12 +176,12 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
       if (table == NULL) {
         DEA_TRY(ctx, dea_result_add_table(ctx, result, &design_table, model, 0, &table));
       }
-      DEA_TRY(ctx, put_design(ctx, &result->variants[i], i, table));
+      DEA_TRY(ctx, add_design(ctx, &result->variants[i], i, table));
     }
   }
   for (size_t i = 0; i < result->variant_count; i++) {
     if (dea_variant_is(&result->variants[i], model, study_name)) {
-      DEA_TRY(ctx, put_monitors(ctx, model, &result->variants[i], result));
+      DEA_TRY(ctx, add_monitors(ctx, model, &result->variants[i], result));
     }
   }
   return DEA_OK;

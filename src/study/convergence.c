@@ -152,7 +152,7 @@ static const struct dea_result_table_type enough_table = DEA_RESULT_TABLE(
 static const struct dea_result_table_type error_table = DEA_RESULT_TABLE(
     study_name, "errors", error_columns, .title = "estimated errors", .where = DEA_IN_CSV);
 
-static dea_status put_facts(struct dea_context *ctx, const struct dea_convergence *c,
+static dea_status add_facts(struct dea_context *ctx, const struct dea_convergence *c,
                             struct dea_result_table *table)
 {
   struct dea_text verdict = {.ctx = ctx};
@@ -164,7 +164,7 @@ static dea_status put_facts(struct dea_context *ctx, const struct dea_convergenc
   return status;
 }
 
-static dea_status put_meshes(struct dea_context *ctx, const struct dea_convergence *c,
+static dea_status add_meshes(struct dea_context *ctx, const struct dea_convergence *c,
                              struct dea_result_table *table)
 {
   for (size_t m = 0; m < c->mesh_count; m++) {
@@ -180,7 +180,7 @@ static dea_status put_meshes(struct dea_context *ctx, const struct dea_convergen
   return DEA_OK;
 }
 
-static dea_status put_quantities(struct dea_context *ctx, const struct dea_convergence *c,
+static dea_status add_quantities(struct dea_context *ctx, const struct dea_convergence *c,
                                  struct dea_result_table *table)
 {
   for (size_t i = 0; i < c->row_count; i++) {
@@ -194,7 +194,7 @@ static dea_status put_quantities(struct dea_context *ctx, const struct dea_conve
 }
 
 /* Voltage by voltage the refinement that is enough, none where no mesh is. */
-static dea_status put_enough(struct dea_context *ctx, const struct dea_convergence *c,
+static dea_status add_enough(struct dea_context *ctx, const struct dea_convergence *c,
                              struct dea_result_table *table)
 {
   for (size_t i = 0; i < c->row_count; i++) {
@@ -210,8 +210,8 @@ static dea_status put_enough(struct dea_context *ctx, const struct dea_convergen
 }
 
 /* A line a quantity, voltage and mesh. */
-static dea_status put_errors(struct dea_context *ctx, const struct dea_convergence *c,
-                             struct dea_result_table *table)
+static dea_status add_error_rows(struct dea_context *ctx, const struct dea_convergence *c,
+                                 struct dea_result_table *table)
 {
   for (size_t i = 0; i < c->row_count * c->mesh_count; i++) {
     const struct dea_convergence_row *r = &c->rows[i / c->mesh_count];
@@ -232,11 +232,11 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
     const struct dea_result_table_type *type;
     dea_status (*put)(struct dea_context *ctx, const struct dea_convergence *c,
                       struct dea_result_table *table);
-  } parts[] = {{&fact_table, put_facts},
-               {&mesh_table, put_meshes},
-               {&quantity_table, put_quantities},
-               {&enough_table, put_enough},
-               {&error_table, put_errors}};
+  } parts[] = {{&fact_table, add_facts},
+               {&mesh_table, add_meshes},
+               {&quantity_table, add_quantities},
+               {&enough_table, add_enough},
+               {&error_table, add_error_rows}};
   struct dea_convergence *c;
   DEA_TRY(ctx, dea_convergence_create(ctx, result, model, &c));
   dea_status status = DEA_OK;

@@ -31,7 +31,7 @@ struct seen {
 /* On the way up. The value is what is 0 at the voltage that is looked for, and above before. */
 struct search {
   struct dea_context *ctx;
-  const struct dea_critical_ask *ask;
+  const struct dea_critical_request *ask;
   struct dea_critical *out;
   struct seen low,
       high;            // the highest that holds, the lowest that does not; value NAN: there is none
@@ -63,9 +63,9 @@ static bool is_of_film(dea_status status)
          status == DEA_E_INVERTED || status == DEA_E_NOT_CONVERGED;
 }
 
-static dea_status make_model(struct search *s)
+static dea_status build_model(struct search *s)
 {
-  const struct dea_critical_ask *ask = s->ask;
+  const struct dea_critical_request *ask = s->ask;
   DEA_TRY(s->ctx, ask->type->create(s->ctx, ask->device, ask->settings, &s->out->model));
   s->stands_V = NAN;
   return DEA_OK;
@@ -76,7 +76,7 @@ static dea_status begin_again(struct search *s)
 {
   s->ask->type->destroy(s->ctx, s->out->model);
   s->out->model = NULL;
-  return make_model(s);
+  return build_model(s);
 }
 
 /* Solves; *limit: the limit point that was met or passed on the way, NULL without one. *there:
@@ -137,7 +137,7 @@ static double next_V(const struct search *s)
 
 /* Takes what was found at a voltage. *there: it is the one that is looked for, but for what the
  * last line is off. A value that is nothing is so where the film is slack, or right there. */
-static void take(struct search *s, double voltage_V, double value, bool *there)
+static void add_value(struct search *s, double voltage_V, double value, bool *there)
 {
   const struct seen now = {voltage_V, value};
   s->largest = fmax(s->largest, fabs(value));
@@ -159,8 +159,8 @@ static void take(struct search *s, double voltage_V, double value, bool *there)
 }
 
 /* Nothing was found at a voltage. *ends: nothing that holds less will be. */
-static dea_status take_failure(struct search *s, double voltage_V, const struct dea_event *limit,
-                               bool *ends)
+static dea_status store_failure(struct search *s, double voltage_V, const struct dea_event *limit,
+                                bool *ends)
 {
   const bool known = limit != NULL && limit->kind != DEA_EVENT_SLACK;
   s->high = (struct seen){known ? fmin(voltage_V, limit->point.voltage_V) : voltage_V, NAN};
@@ -216,9 +216,9 @@ static dea_status find_crossing(struct search *s)
     bool there;
     DEA_TRY(s->ctx, solve(s, next, &s->out->point, &limit, &there));
     if (there) {
-      take(s, next, value_of(s, &s->out->point), &found);
+      add_value(s, next, value_of(s, &s->out->point), &found);
     } else {
-      DEA_TRY(s->ctx, take_failure(s, next, limit, &ends));
+      DEA_TRY(s->ctx, store_failure(s, next, limit, &ends));
     }
   }
   if (holds && !ends && !found && isfinite(s->high.V) && s->low.value < near * s->largest) {
@@ -235,7 +235,7 @@ static dea_status find_crossing(struct search *s)
 // Pull-in -----------------------------------------------------------------------------------------
 
 /* The first pull-in on a path. */
-static dea_status take_event(void *user, const struct dea_event *event)
+static dea_status store_event(void *user, const struct dea_event *event)
 {
   struct dea_critical *out = user;
   if (event->kind == DEA_EVENT_PULL_IN && isnan(out->voltage_V)) {
@@ -261,7 +261,7 @@ static dea_status find_on_path(struct search *s)
                                            .max_voltage_V = s->ask->highest_V,
                                            .max_points = DEA_PATH_POINTS_MAX};
   const dea_status status =
-      s->ask->type->path(s->ctx, s->out->model, &options, pass_point, take_event, s->out);
+      s->ask->type->path(s->ctx, s->out->model, &options, pass_point, store_event, s->out);
   if (status != DEA_OK && isnan(s->out->voltage_V)) {
     return dea_fail_chain(s->ctx, status, __func__, __FILE__, __LINE__);
   }
@@ -343,7 +343,7 @@ static dea_status lowest_square(struct search *s, double voltage_V, double *squa
   return DEA_OK;
 }
 
-static void take_square(struct fall *f, double voltage_V, double square)
+static void store_square(struct fall *f, double voltage_V, double square)
 {
   if (f->count == 3) {
     memmove(f->x, f->x + 1, 2 * sizeof *f->x);
@@ -394,7 +394,7 @@ static dea_status find_buckling(struct search *s)
   if (!there || isnan(square)) {
     return DEA_OK;
   }
-  take_square(&f, 0, square);
+  store_square(&f, 0, square);
   for (int i = 0; i < BUCKLING_STEPS; i++) {
     const double low = f.x[f.count - 1], end = end_of_line(&f);
     if (f.count == 3 && end - low <= close * end) {
@@ -413,7 +413,7 @@ static dea_status find_buckling(struct search *s)
       return DEA_OK;
     }
     if (there) {
-      take_square(&f, sqrt(next), square);
+      store_square(&f, sqrt(next), square);
     } else {
       high = next;
     }
@@ -425,14 +425,14 @@ static dea_status find_buckling(struct search *s)
 
 // All of it ---------------------------------------------------------------------------------------
 
-dea_status dea_critical_find(struct dea_context *ctx, const struct dea_critical_ask *ask,
+dea_status dea_critical_find(struct dea_context *ctx, const struct dea_critical_request *ask,
                              struct dea_critical *out)
 {
   struct search s = {
       .ctx = ctx, .ask = &out->ask, .out = out, .high = {INFINITY, NAN}, .stands_V = NAN};
   *out = (struct dea_critical){
       .ask = *ask, .voltage_V = NAN, .point = dea_load_point_empty(), .model = NULL};
-  DEA_TRY(ctx, make_model(&s));
+  DEA_TRY(ctx, build_model(&s));
   return ask->kind == DEA_EVENT_BUCKLING  ? find_buckling(&s)
          : ask->kind != DEA_EVENT_PULL_IN ? find_crossing(&s)
          : ask->type->path != NULL        ? find_on_path(&s)
@@ -450,8 +450,8 @@ void dea_critical_end(struct dea_context *ctx, struct dea_critical *critical)
 // Slopes ------------------------------------------------------------------------------------------
 
 /* The changes at one voltage, own [count]. */
-static void take_at(double V, const struct dea_design_change *changes, size_t count,
-                    struct dea_design_change *own)
+static void store_at(double V, const struct dea_design_change *changes, size_t count,
+                     struct dea_design_change *own)
 {
   for (size_t i = 0; i < count; i++) {
     own[i] = changes[i];
@@ -470,9 +470,9 @@ static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_crit
       dea_point_column_find(c->ask.kind == DEA_EVENT_SLACK      ? "min_tension_N_per_m"
                             : c->ask.kind == DEA_EVENT_BUCKLING ? "frequency_Hz"
                                                                 : "breakdown_margin");
-  const struct dea_gradient_ask ask = {
+  const struct dea_gradient_request ask = {
       .changes = own, .change_count = count + 1, .columns = &column, .column_count = 1};
-  take_at(V, changes, count, own);
+  store_at(V, changes, count, own);
   own[count] = (struct dea_design_change){.device = {c->ask.device, c->ask.device},
                                           .voltage_V = {V * (1 - share), V * (1 + share)},
                                           .width = 2 * share * V};
@@ -534,10 +534,10 @@ static dea_status slopes_of_limit(struct dea_context *ctx, const struct dea_crit
 {
   struct dea_arena memory = {.ctx = ctx};
   struct dea_design_change *own = dea_arena_alloc(&memory, count, sizeof *own);
-  const struct dea_gradient_ask ask = {.changes = own, .change_count = count, .of_limit = true};
+  const struct dea_gradient_request ask = {.changes = own, .change_count = count, .of_limit = true};
   dea_status status = dea_arena_status(&memory);
   if (status == DEA_OK) {
-    take_at(c->voltage_V, changes, count, own);
+    store_at(c->voltage_V, changes, count, own);
     status = c->ask.type->gradient(ctx, c->model, &ask, slopes);
   }
   if (status == DEA_E_UNSUPPORTED) {
@@ -560,7 +560,7 @@ static dea_status slopes_anew(struct dea_context *ctx, const struct dea_critical
     double at_V[2] = {NAN, NAN};
     for (size_t k = 0; k < 2 && changes[i].device[k] != NULL; k++) {
       struct dea_critical side;
-      struct dea_critical_ask ask = c->ask;
+      struct dea_critical_request ask = c->ask;
       ask.device = changes[i].device[k];
       ask.highest_V = 2 * c->voltage_V;
       const dea_status status = dea_critical_find(ctx, &ask, &side);

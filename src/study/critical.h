@@ -16,7 +16,7 @@ enum { DEA_CRITICAL_KINDS = 4 };
 extern const struct dea_critical_kind dea_critical_kinds[DEA_CRITICAL_KINDS];
 
 /* Of which device, how it is computed, and what is looked for. All lent. */
-struct dea_critical_ask {
+struct dea_critical_request {
   const struct dea_model_type *type;
   const struct dea_device *device;
   const struct dea_model_settings *settings;
@@ -26,7 +26,7 @@ struct dea_critical_ask {
 };
 
 struct dea_critical {
-  struct dea_critical_ask ask;
+  struct dea_critical_request ask;
   double voltage_V;            // NAN: there is none; `why` says why
   struct dea_load_point point; // there; without one, the last that was found
   char why[DEA_CRITICAL_WHY_SIZE];
@@ -36,7 +36,7 @@ struct dea_critical {
 /* Looks for the lowest such voltage on the branch that begins at rest. A device without one is no
  * failure. out: ended by dea_critical_end, also on failure; what `ask` lends has to stay until
  * then. */
-dea_status dea_critical_find(struct dea_context *ctx, const struct dea_critical_ask *ask,
+dea_status dea_critical_find(struct dea_context *ctx, const struct dea_critical_request *ask,
                              struct dea_critical *out);
 void dea_critical_end(struct dea_context *ctx, struct dea_critical *critical);
 

@@ -205,8 +205,8 @@ void dea_changed_device_free(struct dea_changed_device *changed)
 }
 
 /* One side of a change of a number; false in *there where no device is like that. */
-static dea_status make_side(struct dea_context *ctx, const struct dea_design_gradient *ask,
-                            size_t i, size_t side, double value, struct changed *all, bool *there)
+static dea_status build_side(struct dea_context *ctx, const struct dea_design_gradient *ask,
+                             size_t i, size_t side, double value, struct changed *all, bool *there)
 {
   const struct dea_design_number *number = &ask->numbers[i];
   struct dea_design_change *out = &all->changes[i];
@@ -232,8 +232,8 @@ static dea_status make_side(struct dea_context *ctx, const struct dea_design_gra
 
 /* To both sides, or to the one where there is a device: a monitor may stand at the edge of its ply,
  * which cannot be shorter. */
-static dea_status make_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
-                               struct changed *all)
+static dea_status build_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
+                                struct changed *all)
 {
   double share = ask->type->gradient != NULL ? step_at_state : step_anew;
   for (size_t i = 0; i < ask->number_count; i++) {
@@ -242,7 +242,8 @@ static dea_status make_changes(struct dea_context *ctx, const struct dea_design_
     size_t sides = 0;
     for (size_t k = 0; k < 2; k++) {
       bool there;
-      DEA_TRY(ctx, make_side(ctx, ask, i, k, number->value + (k == 0 ? -step : step), all, &there));
+      DEA_TRY(ctx,
+              build_side(ctx, ask, i, k, number->value + (k == 0 ? -step : step), all, &there));
       sides += there ? 1 : 0;
     }
     all->changes[i].width = (double)sides * step;
@@ -263,7 +264,7 @@ static dea_status begin_changes(struct dea_context *ctx, const struct dea_design
   all->scratch = dea_arena_alloc(&all->memory, 1, sizeof *all->scratch);
   all->changes = dea_arena_alloc(&all->memory, ask->number_count, sizeof *all->changes);
   DEA_TRY(ctx, dea_arena_status(&all->memory));
-  return DEA_CHAIN(ctx, make_changes(ctx, ask, all));
+  return DEA_CHAIN(ctx, build_changes(ctx, ask, all));
 }
 
 static void free_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
@@ -282,16 +283,16 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
   const struct dea_model_settings settings = dea_model_settings_of(ask->design);
   dea_status status = begin_changes(ctx, ask, &all);
   if (status == DEA_OK) {
-    const struct dea_gradient_ask question = {.changes = all.changes,
-                                              .change_count = ask->number_count,
-                                              .columns = ask->columns,
-                                              .column_count = ask->column_count,
-                                              .modes = ask->modes,
-                                              .monitors = ask->monitors,
-                                              .monitor_count = ask->monitor_count,
-                                              .motions = ask->motions,
-                                              .holds_stretch = ask->stretch > 0,
-                                              .stretch = ask->stretch};
+    const struct dea_gradient_request question = {.changes = all.changes,
+                                                  .change_count = ask->number_count,
+                                                  .columns = ask->columns,
+                                                  .column_count = ask->column_count,
+                                                  .modes = ask->modes,
+                                                  .monitors = ask->monitors,
+                                                  .monitor_count = ask->monitor_count,
+                                                  .motions = ask->motions,
+                                                  .holds_stretch = ask->stretch > 0,
+                                                  .stretch = ask->stretch};
     status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
   }
   free_changes(ctx, ask, &all);

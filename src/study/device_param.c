@@ -81,7 +81,7 @@ dea_status dea_device_param_unknown(struct dea_context *ctx,
                          nearest != NULL ? "'?" : "");
 }
 
-const char *dea_device_param_take_state(char *text)
+const char *dea_device_param_split_state(char *text)
 {
   static const char *const states[] = {" stretched", " unstretched"};
   for (size_t k = 0; k < 2; k++) {
@@ -95,9 +95,9 @@ const char *dea_device_param_take_state(char *text)
 }
 
 /* The design's value, as it stands there. */
-static dea_status take_value(struct dea_context *ctx, const struct dea_design *design,
-                             const struct dea_label *name, const struct dea_field *field,
-                             struct dea_device_param *out)
+static dea_status parse_value(struct dea_context *ctx, const struct dea_design *design,
+                              const struct dea_label *name, const struct dea_field *field,
+                              struct dea_device_param *out)
 {
   const struct dea_listed *item = find_value(design, name->text);
   if (item == NULL || item->origin == DEA_ABSENT || item->text == NULL) {
@@ -105,7 +105,7 @@ static dea_status take_value(struct dea_context *ctx, const struct dea_design *d
   }
   char text[DEA_TITLE_SIZE], why[DEA_WHY_SIZE] = "";
   snprintf(text, sizeof text, "%.200s", item->text);
-  out->state = dea_device_param_take_state(text);
+  out->state = dea_device_param_split_state(text);
   if (!dea_units_read(ctx, text, (struct dea_measure){field->unit, field->example}, &out->designed,
                       why)) {
     out->designed = NAN; // a list of several, which the caller refuses
@@ -142,7 +142,7 @@ static dea_status from_key(struct dea_context *ctx, const struct dea_device_para
   const bool limited = field->min != 0 || field->max != 0;
   out->param.low = limited ? field->min : field->above_min ? 0 : -INFINITY;
   out->param.high = limited && field->max > field->min ? field->max : INFINITY;
-  DEA_TRY(ctx, take_value(ctx, source->design, name, field, out));
+  DEA_TRY(ctx, parse_value(ctx, source->design, name, field, out));
   *good = true;
   return DEA_OK;
 }
@@ -203,7 +203,7 @@ struct wanted {
   bool found;
 };
 
-static void look(void *user, const struct dea_material_number *number)
+static void match_number(void *user, const struct dea_material_number *number)
 {
   struct wanted *wanted = user;
   if (strcmp(number->key, wanted->name) == 0) {
@@ -250,7 +250,7 @@ dea_status dea_device_param_find(struct dea_context *ctx,
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
   snprintf(out->param.name, sizeof out->param.name, "%.127s", name->text);
-  dea_material_numbers(source->device, source->design->parts != NULL, look, &wanted);
+  dea_material_numbers(source->device, source->design->parts != NULL, match_number, &wanted);
   if (wanted.found) {
     *good = true;
     return DEA_OK;
@@ -273,7 +273,7 @@ dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device
   *good = false;
   snprintf(own, sizeof own, "%s", text->text);
   snprintf(example, sizeof example, "2 %.16s", param->param.unit);
-  const char *state = dea_device_param_take_state(own);
+  const char *state = dea_device_param_split_state(own);
   if (state[0] != '\0' && strcmp(state, param->state) != 0) {
     return dea_finding_add(ctx, DEA_ERROR, text->location,
                            "%.60s is a length%s in the design: its std has to be one too",
@@ -323,7 +323,7 @@ void dea_device_param_show(const struct dea_device_param *param, double value, c
   dea_device_param_text(param, value, 6, out);
 }
 
-void dea_device_param_put(const struct dea_device_param *param, double value,
+void dea_device_param_set(const struct dea_device_param *param, double value,
                           struct dea_material *material)
 {
   if (param->kind == DEA_DEVICE_MATERIAL) {
@@ -365,7 +365,7 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
   DEA_TRY(ctx, dea_device_build(ctx, *design, device));
   for (size_t j = 0; j < count; j++) {
     for (size_t k = 0; (one = dea_device_param_tie(&params[j], k)) != NULL; k++) {
-      dea_device_param_put(one, p[j], dea_material_at(*device, one->material));
+      dea_device_param_set(one, p[j], dea_material_at(*device, one->material));
     }
   }
   return DEA_CHAIN(ctx, (*design)->parts != NULL ? dea_device_find_disc(ctx, *device) : DEA_OK);

@@ -29,7 +29,7 @@ dea_status dea_device_param_unknown(struct dea_context *ctx,
                                     const struct dea_label *name, const char *why);
 /* Takes " stretched" or " unstretched" off the end of a text, and returns it, "" for neither;
  * static storage. */
-const char *dea_device_param_take_state(char *text);
+const char *dea_device_param_split_state(char *text);
 /* Its standard uncertainty from a text, "2 um". *good: false after a finding at its place. */
 dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device_param *param,
                                 const struct dea_label *text, double *std, bool *good);
@@ -56,5 +56,5 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
 /* The parameter itself for k = 0, then those that take the same value; NULL: there is no more. */
 const struct dea_device_param *dea_device_param_tie(const struct dea_device_param *param, size_t k);
 /* A value of a parameter into its material (param->material); nothing of a key of the design. */
-void dea_device_param_put(const struct dea_device_param *param, double value,
+void dea_device_param_set(const struct dea_device_param *param, double value,
                           struct dea_material *material);

@@ -231,7 +231,7 @@ static dea_status press_in(struct dea_context *ctx, struct press *p, size_t stop
 }
 
 /* All voltages from where the tip is pressed in. */
-static dea_status take_line(struct dea_context *ctx, struct press *p, struct dea_curve *curve)
+static dea_status measure_line(struct dea_context *ctx, struct press *p, struct dea_curve *curve)
 {
   const struct dea_design *design = p->result->design;
   const struct dea_force_line line = {.type = p->type,
@@ -241,14 +241,14 @@ static dea_status take_line(struct dea_context *ctx, struct press *p, struct dea
                                       .voltages_V = design->compute.voltages_V,
                                       .count = design->compute.voltage_count,
                                       .tolerance = tolerance_of(design)};
-  return dea_force_line_take(ctx, &line, curve);
+  return dea_force_line_compute(ctx, &line, curve);
 }
 
 /* The same in another process, which hands back its points. */
 static dea_status line_aside(struct dea_context *ctx, void *user, struct dea_bytes *out)
 {
   struct dea_curve line = {.memory = {.ctx = ctx}};
-  dea_status status = take_line(ctx, user, &line);
+  dea_status status = measure_line(ctx, user, &line);
   for (size_t i = 0; i < line.count; i++) {
     const struct dea_load_point *point = &line.points[i];
     const size_t count = point->monitors != NULL ? point->monitors->count : 0;
@@ -280,8 +280,8 @@ static bool one_failed(const struct lines *lines)
 
 /* Presses in for one stop after the other, since each goes on from the one before, and begins its
  * line beside that, or computes it. No more after a line that failed. */
-static dea_status take_lines(struct dea_context *ctx, struct press *press, size_t stops,
-                             const char *what, struct lines *lines, struct dea_curve *curve)
+static dea_status measure_lines(struct dea_context *ctx, struct press *press, size_t stops,
+                                const char *what, struct lines *lines, struct dea_curve *curve)
 {
   for (size_t i = 0; i < stops && !one_failed(lines); i++) {
     DEA_TRY(ctx, press_in(ctx, press, i));
@@ -291,7 +291,7 @@ static dea_status take_lines(struct dea_context *ctx, struct press *press, size_
       lines->begun++;
       DEA_TRY(ctx, dea_worker_wait(ctx, lines->at, lines->begun, lines->most - 1));
     } else {
-      DEA_TRY(ctx, take_line(ctx, press, curve));
+      DEA_TRY(ctx, measure_line(ctx, press, curve));
       dea_progress(ctx, what, i + 1, stops);
     }
   }
@@ -332,7 +332,7 @@ static dea_status gather_line(struct dea_context *ctx, const struct dea_worker *
   const char *bytes;
   size_t length;
   struct dea_load_point point;
-  dea_status status = dea_worker_take(ctx, line, &bytes, &length);
+  dea_status status = dea_worker_collect(ctx, line, &bytes, &length);
   struct dea_arena memory = {.ctx = ctx};
   dea_status added = DEA_OK;
   for (size_t at = 0; added == DEA_OK && next_point(bytes, length, &at, &memory, &point);) {
@@ -375,7 +375,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &curve));
   DEA_TRY(ctx, dea_device_columns_add(ctx, result->device)); // before processes begin beside
   snprintf(what, sizeof what, "%s force", type->name);
-  dea_status status = take_lines(ctx, &press, stops, what, &lines, curve);
+  dea_status status = measure_lines(ctx, &press, stops, what, &lines, curve);
   if (lines.begun > 0) {
     status = gather(ctx, &lines, stops, what, status, curve);
   }

@@ -188,7 +188,7 @@ static dea_status go(struct way *way)
                                                             : dea_fail(way->ctx, status, "%s", why);
 }
 
-static dea_status make_room(struct way *way)
+static dea_status reserve(struct way *way)
 {
   struct dea_context *ctx = way->ctx;
   size_t n = way->asked->count;
@@ -213,17 +213,17 @@ static dea_status add_points(const struct way *way, struct dea_curve *curve)
   return DEA_OK;
 }
 
-dea_status dea_force_line_take(struct dea_context *ctx, const struct dea_force_line *asked,
-                               struct dea_curve *curve)
+dea_status dea_force_line_compute(struct dea_context *ctx, const struct dea_force_line *asked,
+                                  struct dea_curve *curve)
 {
   struct way way = {.ctx = ctx, .asked = asked, .seen = {.memory = {.ctx = ctx}}};
   way.line.voltages_V = asked->voltages_V;
   way.line.count = rising(asked->voltages_V, asked->count);
   if (asked->tolerance <= 0 || asked->pressed == NULL || way.line.count <= 2 * FIRST_GAPS) {
-    return dea_study_take_points(ctx, asked->type, asked->model, asked->device, asked->voltages_V,
-                                 asked->count, curve);
+    return dea_study_add_points(ctx, asked->type, asked->model, asked->device, asked->voltages_V,
+                                asked->count, curve);
   }
-  dea_status status = make_room(&way);
+  dea_status status = reserve(&way);
   if (status == DEA_OK) {
     status = go(&way);
     dea_status added = add_points(&way, curve);

@@ -19,5 +19,5 @@ struct dea_force_line {
 /* Adds the points of all voltages to a curve, interpolated ones among them
  * (docs/theory/loads.md, "Voltages between computed ones"). Where it fails, as the model's `solve`
  * or DEA_E_INTERRUPTED, those before are added, when interrupted only computed ones. */
-dea_status dea_force_line_take(struct dea_context *ctx, const struct dea_force_line *asked,
-                               struct dea_curve *curve);
+dea_status dea_force_line_compute(struct dea_context *ctx, const struct dea_force_line *asked,
+                                  struct dea_curve *curve);

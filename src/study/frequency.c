@@ -113,9 +113,9 @@ static dea_status add_points(struct dea_context *ctx, const struct dea_layout *l
 }
 
 /* All frequencies at one bias. */
-static dea_status take(struct dea_context *ctx, const struct dea_model_type *type,
-                       struct dea_model *model, const struct dea_load_point *at, size_t stop,
-                       struct dea_result *result, struct dea_curve *curve)
+static dea_status solve_frequencies(struct dea_context *ctx, const struct dea_model_type *type,
+                                    struct dea_model *model, const struct dea_load_point *at,
+                                    size_t stop, struct dea_result *result, struct dea_curve *curve)
 {
   (void)stop;
   const struct settings *settings = settings_of(result->design);
@@ -155,7 +155,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     biases_V[i] = settings->biases_V[i].si;
   }
   return dea_study_stop_by_stop(ctx, type, result, study_name, true, biases_V, settings->bias_count,
-                                take);
+                                solve_frequencies);
 }
 
 // Figures ----------------------------------------------------------------------------------------

@@ -60,7 +60,7 @@ static double elasticity(const struct found *f, size_t i)
   return f->slopes[i] * f->numbers[i].value / f->voltage_V;
 }
 
-static dea_status put_slopes(struct dea_context *ctx, const struct found *f,
+static dea_status add_slopes(struct dea_context *ctx, const struct found *f,
                              struct dea_result_table *table)
 {
   for (size_t i = 0; i < f->number_count; i++) {
@@ -78,7 +78,7 @@ static dea_status put_slopes(struct dea_context *ctx, const struct found *f,
 }
 
 /* Numbers by how much they matter, most first. */
-static dea_status put_matter(struct dea_context *ctx, const struct found *f,
+static dea_status add_matter(struct dea_context *ctx, const struct found *f,
                              struct dea_result_table *table)
 {
   double size[DEA_NUMBERS_MAX];
@@ -101,14 +101,14 @@ static dea_status put_matter(struct dea_context *ctx, const struct found *f,
   return DEA_OK;
 }
 
-static dea_status put(struct dea_context *ctx, const char *model, const struct found *f,
-                      struct dea_result *result)
+static dea_status add_table(struct dea_context *ctx, const char *model, const struct found *f,
+                            struct dea_result *result)
 {
   struct dea_result_table *table;
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &matter_table, model, &table));
-  DEA_TRY(ctx, put_matter(ctx, f, table));
+  DEA_TRY(ctx, add_matter(ctx, f, table));
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &slope_table, model, &table));
-  return put_slopes(ctx, f, table);
+  return add_slopes(ctx, f, table);
 }
 
 /* Whether a curve has gone over to another state, as a film does that buckles. */
@@ -148,7 +148,7 @@ static bool comes_to(const struct dea_result *result, const char *model, enum de
   return !any && kind != DEA_EVENT_BUCKLING;
 }
 
-static dea_status find(struct dea_context *ctx, const struct dea_critical_ask *ask,
+static dea_status find(struct dea_context *ctx, const struct dea_critical_request *ask,
                        const struct dea_result *result, struct found *f)
 {
   struct dea_critical critical;
@@ -179,16 +179,17 @@ dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_model_
   dea_status status = f != NULL ? DEA_OK : DEA_E_MEMORY;
   settings.domain = result->device->disc ? settings.domain : DEA_DOMAIN_DISC;
   for (size_t i = 0; i < DEA_CRITICAL_KINDS && status == DEA_OK && highest_V > 0; i++) {
-    const struct dea_critical_ask ask = {.type = type,
-                                         .device = result->device,
-                                         .settings = &settings,
-                                         .kind = dea_critical_kinds[i].kind,
-                                         .first_V = highest_V / 4,
-                                         .highest_V = highest_V};
+    const struct dea_critical_request ask = {.type = type,
+                                             .device = result->device,
+                                             .settings = &settings,
+                                             .kind = dea_critical_kinds[i].kind,
+                                             .first_V = highest_V / 4,
+                                             .highest_V = highest_V};
     if (comes_to(result, type->name, dea_critical_kinds[i].kind)) {
       f->limit = &dea_critical_kinds[i];
       status = find(ctx, &ask, result, f);
-      status = status == DEA_OK && !isnan(f->voltage_V) ? put(ctx, type->name, f, result) : status;
+      status =
+          status == DEA_OK && !isnan(f->voltage_V) ? add_table(ctx, type->name, f, result) : status;
     }
   }
   dea_free(ctx, f);

@@ -332,8 +332,8 @@ static double value_at(const struct loading *l, size_t i)
 }
 
 /* Place of the body and what holds or pushes it; NAN without one. */
-static void look_at_body(const struct loading *l, const struct dea_observation *seen, double value,
-                         double out[VALUES])
+static void check_body(const struct loading *l, const struct dea_observation *seen, double value,
+                       double out[VALUES])
 {
   int component = l->control.component;
   for (int k = 0; k < VALUES; k++) {
@@ -437,7 +437,7 @@ static dea_status move_to(struct dea_context *ctx, struct loading *l, double val
 }
 
 /* The control goes to a value; a row of it. */
-static dea_status take(struct dea_context *ctx, struct loading *l, double value, bool back)
+static dea_status solve_point(struct dea_context *ctx, struct loading *l, double value, bool back)
 {
   struct dea_load_point at;
   struct dea_observation seen;
@@ -448,7 +448,7 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
   }
   DEA_TRY(ctx, move_to(ctx, l, value, &at));
   DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
-  look_at_body(l, &seen, value, v);
+  check_body(l, &seen, value, v);
   const struct dea_event *passed = l->type->passed != NULL ? l->type->passed(l->model) : NULL;
   double *limit = back ? &l->least : &l->peak;
   if (passed != NULL && l->range == FORCE && isnan(*limit)) {
@@ -488,7 +488,7 @@ static dea_status block(struct dea_context *ctx, struct loading *l)
       DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
     }
     DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
-    look_at_body(l, &seen, 0, v);
+    check_body(l, &seen, 0, v);
     l->blocked[i] = v[l->range == SHIFT ? OF_FORCE : OF_MOMENT];
   }
   return DEA_OK;
@@ -517,10 +517,10 @@ static dea_status go(struct dea_context *ctx, struct loading *l)
   size_t steps = (size_t)l->settings->steps.si;
   DEA_TRY(ctx, begin(ctx, l));
   for (size_t i = 0; i <= steps; i++) {
-    DEA_TRY(ctx, take(ctx, l, value_at(l, i), false));
+    DEA_TRY(ctx, solve_point(ctx, l, value_at(l, i), false));
   }
   for (size_t i = l->settings->back.value == 1 ? steps : 0; i-- > 0;) {
-    DEA_TRY(ctx, take(ctx, l, value_at(l, i), true));
+    DEA_TRY(ctx, solve_point(ctx, l, value_at(l, i), true));
   }
   return DEA_OK;
 }

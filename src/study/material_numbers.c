@@ -75,9 +75,9 @@ static void fill(const struct dea_device *device, const char *name, const char *
          sizeof out->value);
 }
 
-static void take_material(const struct dea_device *device, size_t i,
-                          void (*take)(void *user, const struct dea_material_number *number),
-                          void *user)
+static void add_material(const struct dea_device *device, size_t i,
+                         void (*take)(void *user, const struct dea_material_number *number),
+                         void *user)
 {
   const struct dea_law *law = dea_material_of(device, i)->law;
   for (size_t k = 0; law != NULL && k < law->param_count; k++) {
@@ -113,7 +113,7 @@ void dea_material_numbers(const struct dea_device *device, bool plies,
   const size_t end = DEA_OF_PLIES + (plies ? device->layout->ply_count : 0);
   for (size_t i = plies ? DEA_OF_PLIES : 0; i < end; i++) {
     if (plies || is_there(device, i)) {
-      take_material(device, i, take, user);
+      add_material(device, i, take, user);
     }
   }
 }

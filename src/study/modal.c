@@ -47,9 +47,9 @@ bool dea_modal_asked(const struct dea_design *design)
 // Study ------------------------------------------------------------------------------------------
 
 /* The modes at one voltage. */
-static dea_status take(struct dea_context *ctx, const struct dea_model_type *type,
-                       struct dea_model *model, const struct dea_load_point *at, size_t stop,
-                       struct dea_result *result, struct dea_curve *curve)
+static dea_status solve_modes(struct dea_context *ctx, const struct dea_model_type *type,
+                              struct dea_model *model, const struct dea_load_point *at, size_t stop,
+                              struct dea_result *result, struct dea_curve *curve)
 {
   const struct settings *settings = dea_design_settings(result->design, &section)->values;
   size_t count = (size_t)settings->count.si;
@@ -78,8 +78,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, true, voltages_V);
-  return DEA_CHAIN(
-      ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, voltages_V, count, take));
+  return DEA_CHAIN(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, voltages_V,
+                                               count, solve_modes));
 }
 
 // Table ------------------------------------------------------------------------------------------

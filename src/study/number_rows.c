@@ -71,7 +71,7 @@ struct materials {
   size_t *count;
 };
 
-static void take_material(void *user, const struct dea_material_number *of)
+static void store_material(void *user, const struct dea_material_number *of)
 {
   const struct materials *to = user;
   const char *material = (const char *)dea_material_of(to->device, of->material);
@@ -91,5 +91,5 @@ static void take_material(void *user, const struct dea_material_number *of)
 void dea_numbers_of_materials(const struct dea_device *device, bool plies,
                               struct dea_design_number *out, size_t *count)
 {
-  dea_material_numbers(device, plies, take_material, &(struct materials){device, out, count});
+  dea_material_numbers(device, plies, store_material, &(struct materials){device, out, count});
 }

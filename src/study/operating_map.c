@@ -190,8 +190,8 @@ static dea_status find_quantity(struct dea_context *ctx, const struct dea_device
   return dea_refuse(ctx, label->location, why);
 }
 
-static dea_status make_plan(struct dea_context *ctx, const struct dea_design *design,
-                            const struct dea_device *device, struct plan *out)
+static dea_status build_plan(struct dea_context *ctx, const struct dea_design *design,
+                             const struct dea_device *device, struct plan *out)
 {
   const struct settings *settings = dea_design_settings(design, &section)->values;
   struct numbers *numbers = dea_alloc(ctx, 1, sizeof *numbers);
@@ -214,7 +214,7 @@ static dea_status refuse(struct dea_context *ctx, const struct dea_design *desig
                          const struct dea_device *device)
 {
   struct plan plan;
-  return DEA_CHAIN(ctx, make_plan(ctx, design, device, &plan));
+  return DEA_CHAIN(ctx, build_plan(ctx, design, device, &plan));
 }
 
 // Tables -----------------------------------------------------------------------------------------
@@ -309,7 +309,7 @@ static double first_of(double before, double now)
 }
 
 /* Where the path passes the levels, linear between its points, as long as it is stable. */
-static dea_status take_point(void *user, const struct dea_load_point *point)
+static dea_status store_point(void *user, const struct dea_load_point *point)
 {
   struct map *map = user;
   if (isnan(map->before.voltage_V) && point->min_tension_N_per_m < 1e-6) {
@@ -330,7 +330,7 @@ static dea_status take_point(void *user, const struct dea_load_point *point)
   return DEA_OK;
 }
 
-static dea_status take_event(void *user, const struct dea_event *event)
+static dea_status store_event(void *user, const struct dea_event *event)
 {
   struct map *map = user;
   double at = event->point.voltage_V;
@@ -367,7 +367,7 @@ static dea_status sweep(struct dea_context *ctx, const struct dea_device *device
     const struct dea_event *limit =
         status != DEA_OK && map->type->limit != NULL ? map->type->limit(model) : NULL;
     if (limit != NULL) {
-      take_event(map, limit);
+      store_event(map, limit);
     }
     status = status == DEA_OK ? dea_monitor_set_read(ctx, &set, map->type, model, false, &point)
                               : status;
@@ -376,7 +376,7 @@ static dea_status sweep(struct dea_context *ctx, const struct dea_device *device
                                 point.min_tension_N_per_m);
       map->now.breakdown_V = passes(map->now.breakdown_V, &before, before.breakdown_margin, &point,
                                     point.breakdown_margin);
-      status = take_point(map, &point);
+      status = store_point(map, &point);
     }
   }
   dea_monitor_set_free(&set);
@@ -394,7 +394,7 @@ static dea_status follow(struct dea_context *ctx, const struct dea_device *devic
   map->before = dea_load_point_empty();
   map->value_before = NAN;
   dea_status status = map->type->path != NULL ? dea_model_path(ctx, map->type, model, &options,
-                                                               take_point, take_event, map)
+                                                               store_point, store_event, map)
                                               : sweep(ctx, device, model, map);
   map->type->destroy(ctx, model);
   return status;
@@ -459,18 +459,17 @@ static void choose_step(const struct dea_curve *curve, struct map *map)
 }
 
 /* The design itself, at rest and at the highest voltage that it reaches. */
-static dea_status look(struct dea_context *ctx, struct map *map)
+static dea_status solve_cells(struct dea_context *ctx, struct map *map)
 {
   const struct dea_device *device = map->result->device;
   struct dea_curve curve = {0};
   struct dea_model *model;
   DEA_TRY(ctx, dea_model_create(ctx, map->type, map->result->design, device, &model));
   const size_t errors = dea_finding_trial_begin(ctx);
-  dea_status status =
-      dea_study_take_points(ctx, map->type, model, device, (double[]){0}, 1, &curve);
+  dea_status status = dea_study_add_points(ctx, map->type, model, device, (double[]){0}, 1, &curve);
   for (double share = 1; share > 0.1 && curve.count == 1; share -= 0.1) {
     const double V = share * map->highest_V;
-    status = dea_study_take_points(ctx, map->type, model, device, &V, 1, &curve);
+    status = dea_study_add_points(ctx, map->type, model, device, &V, 1, &curve);
   }
   dea_finding_trial_end(ctx, errors);
   map->type->destroy(ctx, model);
@@ -561,8 +560,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   if (!(highest_V > 0)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, make_plan(ctx, result->design, result->device, &map.plan));
-  DEA_TRY(ctx, look(ctx, &map));
+  DEA_TRY(ctx, build_plan(ctx, result->design, result->device, &map.plan));
+  DEA_TRY(ctx, solve_cells(ctx, &map));
   if (map.plan.column < 0) { // it has no point
     return DEA_OK;
   }

@@ -12,7 +12,7 @@ struct target {
   struct dea_curve *curve;
 };
 
-static dea_status take_point(void *user, const struct dea_load_point *point)
+static dea_status store_point(void *user, const struct dea_load_point *point)
 {
   struct target *target = user;
   struct dea_load_point with = *point;
@@ -21,7 +21,7 @@ static dea_status take_point(void *user, const struct dea_load_point *point)
   return dea_curve_add_point(target->ctx, target->curve, &with);
 }
 
-static dea_status take_event(void *user, const struct dea_event *event)
+static dea_status store_event(void *user, const struct dea_event *event)
 {
   struct target *target = user;
   return dea_curve_add_event(target->ctx, target->curve, event);
@@ -92,7 +92,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   }
   dea_status status = dea_monitor_set_init(ctx, type, result->device, &target.set);
   if (status == DEA_OK) {
-    status = dea_model_path(ctx, type, model, &options, take_point, take_event, &target);
+    status = dea_model_path(ctx, type, model, &options, store_point, store_event, &target);
   }
   dea_monitor_set_free(&target.set);
   DEA_TRY(ctx, dea_curve_end(ctx, target.curve, status));

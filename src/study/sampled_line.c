@@ -232,8 +232,8 @@ static void interpolate(const struct dea_sampled_line *line, size_t a, size_t b,
 }
 
 /* The estimated errors of all points of a gap: that of the force, and the largest of all others. */
-static void say_errors(const struct dea_sampled_line *line, size_t a, size_t b,
-                       const enum treatment treatment[DEA_LOAD_POINT_COLUMNS])
+static void report_errors(const struct dea_sampled_line *line, size_t a, size_t b,
+                          const enum treatment treatment[DEA_LOAD_POINT_COLUMNS])
 {
   const int force = dea_point_column_find("force_N");
   double others = error_of_monitors(line, a, b);
@@ -256,6 +256,6 @@ void dea_sampled_line_fill(const struct dea_sampled_line *line)
     for (size_t k = a + 1; k < b; k++) {
       interpolate(line, a, b, k, treatment);
     }
-    say_errors(line, a, b, treatment);
+    report_errors(line, a, b, treatment);
   }
 }

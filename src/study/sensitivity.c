@@ -256,7 +256,7 @@ static const char *flags_of(const struct stop *stop, char out[DEA_FLAGS_SIZE])
   return dea_flags_text(dea_load_point_flags(&stop->point), out);
 }
 
-static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
+static dea_status add_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
                              size_t i, struct dea_result_table *table)
 {
   const struct dea_design_number *number = &stop->numbers[i];
@@ -287,7 +287,7 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
 
 /* Numbers by how much they matter to a quantity, most first, and last those that only the frequency
  * depends on. */
-static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, size_t lead,
+static dea_status add_sorted(struct dea_context *ctx, const struct stop *stop, size_t lead,
                              struct dea_result_table *table)
 {
   static const double least = 1e-100;
@@ -301,12 +301,12 @@ static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, s
   }
   const size_t count = dea_numbers_order(size, stop->number_count, order);
   for (size_t n = 0; n < count; n++) {
-    DEA_TRY(ctx, put_matter(ctx, stop, lead, order[n], table));
+    DEA_TRY(ctx, add_matter(ctx, stop, lead, order[n], table));
   }
   return DEA_OK;
 }
 
-static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
+static dea_status add_slopes(struct dea_context *ctx, const struct stop *stop,
                              struct dea_result_table *table)
 {
   char flags[DEA_FLAGS_SIZE];
@@ -489,7 +489,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
 
 /* Its rows of both tables. Those of what has monitors, or is no disc, are sorted by what each
  * monitor shows, or without monitors by the capacitance. */
-static dea_status put_stop(struct dea_context *ctx, const char *model, const struct stop *stop,
+static dea_status add_stop(struct dea_context *ctx, const char *model, const struct stop *stop,
                            struct dea_result *result)
 {
   struct dea_result_table *table;
@@ -497,18 +497,18 @@ static dea_status put_stop(struct dea_context *ctx, const char *model, const str
   const size_t first = seen ? QUANTITIES : stop->layout != NULL ? CAPACITANCE : leading(stop);
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &matter_table, model, &table));
   for (size_t k = first; k < (seen ? stop->seen : first + 1); k++) {
-    DEA_TRY(ctx, put_sorted(ctx, stop, k, table));
+    DEA_TRY(ctx, add_sorted(ctx, stop, k, table));
   }
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &slope_table, model, &table));
-  return put_slopes(ctx, stop, table);
+  return add_slopes(ctx, stop, table);
 }
 
 /* What matters where the model is. tip: that it is pressed by, NULL: none. stretch: that is held in
  * place of the voltage, 0: none. */
-static dea_status look(struct dea_context *ctx, const struct dea_model_type *type,
-                       struct dea_model *model, const struct dea_load_point *at,
-                       const struct dea_probe *tip, const struct dea_loaded *loaded, double stretch,
-                       struct dea_result *result)
+static dea_status record_stop(struct dea_context *ctx, const struct dea_model_type *type,
+                              struct dea_model *model, const struct dea_load_point *at,
+                              const struct dea_probe *tip, const struct dea_loaded *loaded,
+                              double stretch, struct dea_result *result)
 {
   struct stop *stop = dea_alloc(ctx, 1, sizeof *stop);
   DEA_TRY_MEMORY(stop != NULL);
@@ -522,19 +522,19 @@ static dea_status look(struct dea_context *ctx, const struct dea_model_type *typ
     stop->pressed = (struct dea_pressed){*tip, at->tip_depth_m};
   }
   dea_status status = find_stop(ctx, type, model, result, stop);
-  status = status == DEA_OK ? put_stop(ctx, type->name, stop, result) : status;
+  status = status == DEA_OK ? add_stop(ctx, type->name, stop, result) : status;
   dea_arena_free(&stop->memory);
   dea_free(ctx, stop);
   return DEA_CHAIN(ctx, status);
 }
 
-static dea_status take(struct dea_context *ctx, const struct dea_model_type *type,
-                       struct dea_model *model, const struct dea_load_point *at, size_t number,
-                       struct dea_result *result, struct dea_curve *curve)
+static dea_status solve_stop(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, const struct dea_load_point *at,
+                             size_t number, struct dea_result *result, struct dea_curve *curve)
 {
   (void)number;
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, at));
-  return look(ctx, type, model, at, NULL, NULL, 0, result);
+  return record_stop(ctx, type, model, at, NULL, NULL, 0, result);
 }
 
 /* A stop of study force: pressed at 0 V, then all voltages. */
@@ -549,7 +549,7 @@ static dea_status press(struct dea_context *ctx, const struct dea_model_type *ty
   dea_status status = dea_force_indent(ctx, type, model, result->design, number);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = type->solve(ctx, model, voltages_V[i], &at);
-    status = status == DEA_OK ? look(ctx, type, model, &at, &tip, NULL, 0, result) : status;
+    status = status == DEA_OK ? record_stop(ctx, type, model, &at, &tip, NULL, 0, result) : status;
   }
   type->destroy(ctx, model);
   return DEA_CHAIN(ctx, status);
@@ -564,7 +564,7 @@ static dea_status load(struct dea_context *ctx, const struct dea_model_type *typ
   struct dea_loaded loaded;
   dea_status status = dea_loading_end(ctx, type, result, voltage_V, &model, &at, &loaded);
   if (status == DEA_OK) {
-    status = look(ctx, type, model, &at, NULL, &loaded, 0, result);
+    status = record_stop(ctx, type, model, &at, NULL, &loaded, 0, result);
     type->destroy(ctx, model);
   } else if (status != DEA_E_MEMORY && status != DEA_E_INTERRUPTED) {
     status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
@@ -587,7 +587,7 @@ static dea_status follow(struct dea_context *ctx, const struct dea_model_type *t
   const bool ends = status == DEA_E_NO_EQUILIBRIUM || status == DEA_E_NOT_CONVERGED ||
                     status == DEA_E_UNSUPPORTED;
   if (status == DEA_OK) {
-    status = look(ctx, type, model, &at, NULL, NULL, stretch, result);
+    status = record_stop(ctx, type, model, &at, NULL, NULL, stretch, result);
   } else if (ends) {
     status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                              "model %s: not known what matters at an electrode stretch of %.4g: %s",
@@ -608,8 +608,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                      ? dea_study_stops(result->design, settings->voltages_V,
                                        settings->voltage_count, false, voltages_V)
                      : 1;
-  DEA_TRY(ctx,
-          dea_study_stop_by_stop(ctx, type, result, study_name, false, voltages_V, count, take));
+  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, false, voltages_V, count,
+                                      solve_stop));
   for (size_t i = 0; type->indent != NULL && i < dea_force_stops(result->design); i++) {
     DEA_TRY(ctx, press(ctx, type, result, i, voltages_V, count));
   }

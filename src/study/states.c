@@ -154,7 +154,7 @@ static void free_search(struct search *s)
 }
 
 /* Displacements of the film where the model is, owned by the caller. */
-static dea_status take_film(struct search *s, double **u, size_t *count)
+static dea_status store_film(struct search *s, double **u, size_t *count)
 {
   struct dea_context *ctx = s->ctx;
   struct dea_field_mesh *mesh;
@@ -221,7 +221,7 @@ static dea_status keep_model(struct search *s, struct dea_state *kept)
   return dea_state_copy_values(s->ctx, &now, kept);
 }
 
-static dea_status make_room(struct search *s)
+static dea_status reserve(struct search *s)
 {
   if (s->count < s->capacity) {
     return DEA_OK;
@@ -238,9 +238,9 @@ static dea_status add_state(struct search *s, size_t level, const struct dea_loa
 {
   double *u;
   size_t count = 0;
-  DEA_TRY(s->ctx, take_film(s, &u, &count));
+  DEA_TRY(s->ctx, store_film(s, &u, &count));
   *index = find_state(s, level, point, u);
-  dea_status status = *index == NONE ? make_room(s) : DEA_OK;
+  dea_status status = *index == NONE ? reserve(s) : DEA_OK;
   if (status != DEA_OK || *index != NONE) {
     dea_free(s->ctx, u);
     return status;
@@ -473,7 +473,7 @@ static dea_status keep_transferred(struct search *s, struct finer *mesh, size_t 
   struct search on_mesh = {.ctx = s->ctx, .type = s->type, .model = mesh->model};
   one->point = *point;
   one->is = (int)i;
-  DEA_TRY(s->ctx, take_film(&on_mesh, &one->u, &one->point_count));
+  DEA_TRY(s->ctx, store_film(&on_mesh, &one->u, &one->point_count));
   return keep_model(&on_mesh, &one->saved);
 }
 
@@ -543,7 +543,7 @@ static dea_status transfer_all(struct search *s, struct finer *before, struct fi
   return DEA_OK;
 }
 
-static dea_status make_mesh(struct search *s, double refinement, struct finer *mesh)
+static dea_status build_mesh(struct search *s, double refinement, struct finer *mesh)
 {
   struct dea_model_settings settings = dea_model_settings_of(s->result->design);
   refine_model(s->settings, refinement, &settings);
@@ -569,7 +569,7 @@ static dea_status transfer_states(struct search *s, struct finer *meshes, size_t
   for (*count = 0; *count < settings->refinement_count && status == DEA_OK;) {
     struct finer *before = *count > 0 ? &meshes[*count - 1] : NULL;
     struct finer *mesh = &meshes[*count];
-    status = make_mesh(s, settings->refinements[*count].si, mesh);
+    status = build_mesh(s, settings->refinements[*count].si, mesh);
     status = status == DEA_OK ? transfer_all(s, before, mesh) : status;
     if (before != NULL) {
       forget_mesh(s, before);
@@ -620,7 +620,7 @@ static void name_branch(size_t number, char out[NAME_SIZE])
 }
 
 /* A variant of the result for each branch, with the profile at its highest voltage. */
-static dea_status put_state(struct search *s, size_t i, size_t *branches)
+static dea_status append_state(struct search *s, size_t i, size_t *branches)
 {
   struct dea_context *ctx = s->ctx;
   struct state *state = &s->states[i];
@@ -752,7 +752,7 @@ static void name_lead(const struct search *s, const struct state *state, int way
   }
 }
 
-static dea_status put_state_row(const struct search *s, const struct state *state, double lowest_J,
+static dea_status add_state_row(const struct search *s, const struct state *state, double lowest_J,
                                 struct dea_result_table *table)
 {
   const struct dea_load_point *p = &state->point;
@@ -783,7 +783,7 @@ static double extreme(const struct search *s, size_t level, const char *key, int
 }
 
 /* States are in the order of levels as the sweep has found them: the first of each. */
-static dea_status put_band_row(const struct search *s, size_t level, const struct state *lowest,
+static dea_status add_band_row(const struct search *s, size_t level, const struct state *lowest,
                                struct dea_result_table *table)
 {
   char name[NAME_SIZE], up[NAME_SIZE];
@@ -801,7 +801,7 @@ static dea_status put_band_row(const struct search *s, size_t level, const struc
 }
 
 /* The i-th state on a mesh; NULL: on the design's. */
-static dea_status put_mesh_row(const struct search *s, size_t i, const struct finer *mesh,
+static dea_status add_mesh_row(const struct search *s, size_t i, const struct finer *mesh,
                                double lowest_J, struct dea_result_table *table)
 {
   const struct dea_load_point unknown = dea_load_point_empty();
@@ -845,7 +845,7 @@ static double lowest_on(const struct search *s, size_t level, const struct finer
 }
 
 /* State by state from mesh to mesh. */
-static dea_status put_meshes(struct search *s, const struct finer *meshes, size_t count)
+static dea_status add_meshes(struct search *s, const struct finer *meshes, size_t count)
 {
   struct dea_result_table *table;
   DEA_TRY(s->ctx, dea_result_add_table(s->ctx, s->result, &mesh_table, s->type->name, 0, &table));
@@ -853,7 +853,7 @@ static dea_status put_meshes(struct search *s, const struct finer *meshes, size_
     for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
       for (size_t m = 0; m <= count; m++) {
         const struct finer *mesh = m > 0 ? &meshes[m - 1] : NULL;
-        DEA_TRY(s->ctx, put_mesh_row(s, i, mesh, lowest_on(s, level, mesh), table));
+        DEA_TRY(s->ctx, add_mesh_row(s, i, mesh, lowest_on(s, level, mesh), table));
       }
     }
   }
@@ -874,7 +874,7 @@ static dea_status refine(struct search *s)
                            s->type->name);
   }
   dea_status status = transfer_states(s, meshes, &count);
-  dea_status put = status != DEA_E_MEMORY ? put_meshes(s, meshes, count) : DEA_OK;
+  dea_status put = status != DEA_E_MEMORY ? add_meshes(s, meshes, count) : DEA_OK;
   for (size_t m = 0; m < MESHES_MAX; m++) {
     forget_mesh(s, &meshes[m]);
     dea_free(s->ctx, meshes[m].transferred);
@@ -883,7 +883,7 @@ static dea_status refine(struct search *s)
 }
 
 /* Branches are lettered as they come, level by level, and then all rows can be written. */
-static dea_status put_result(struct search *s)
+static dea_status add_result(struct search *s)
 {
   struct dea_context *ctx = s->ctx;
   struct dea_result_table *table;
@@ -892,19 +892,19 @@ static dea_status put_result(struct search *s)
     bool several = states_at(s, level) > 1;
     for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
       s->states[i].point.told |= (unsigned)several << DEA_FLAG_STATES;
-      DEA_TRY(ctx, put_state(s, i, &branches));
+      DEA_TRY(ctx, append_state(s, i, &branches));
     }
   }
   DEA_TRY(ctx, dea_result_add_table(ctx, s->result, &state_table, s->type->name, 0, &table));
   for (size_t level = 0; level < s->level_count; level++) {
     size_t lowest = next_state(s, level, s->count);
     for (size_t i = lowest; i < s->count; i = next_state(s, level, i)) {
-      DEA_TRY(ctx, put_state_row(s, &s->states[i], s->states[lowest].point.energy_J, table));
+      DEA_TRY(ctx, add_state_row(s, &s->states[i], s->states[lowest].point.energy_J, table));
     }
   }
   DEA_TRY(ctx, dea_result_add_table(ctx, s->result, &band_table, s->type->name, 0, &table));
   for (size_t level = 0; level < s->level_count; level++) {
-    DEA_TRY(ctx, put_band_row(s, level, &s->states[next_state(s, level, s->count)], table));
+    DEA_TRY(ctx, add_band_row(s, level, &s->states[next_state(s, level, s->count)], table));
   }
   return DEA_OK;
 }
@@ -922,7 +922,7 @@ static const struct dea_result_table_type relaxed_table =
                      .title = "mean of a film that wrinkles freely", .where = ALL);
 
 /* Rows of one mesh, as far as its model goes. */
-static dea_status put_relaxed_mesh(struct search *s, const struct dea_model_settings *settings,
+static dea_status add_relaxed_mesh(struct search *s, const struct dea_model_settings *settings,
                                    struct dea_result_table *table)
 {
   struct dea_model *model = NULL;
@@ -955,7 +955,7 @@ static bool has_relaxed(const struct search *s, const struct dea_model_settings 
 
 /* The tension field at the voltages of the search, on the design's mesh and the finer ones. Where
  * it ends there are no more rows, and a note says why. */
-static dea_status put_relaxed(struct search *s)
+static dea_status append_relaxed(struct search *s)
 {
   struct dea_model_settings settings = dea_model_settings_of(s->result->design);
   struct dea_result_table *table;
@@ -970,7 +970,7 @@ static dea_status put_relaxed(struct search *s)
     if (m > 0) {
       refine_model(s->settings, s->settings->refinements[m - 1].si, &settings);
     }
-    dea_status status = put_relaxed_mesh(s, &settings, table);
+    dea_status status = add_relaxed_mesh(s, &settings, table);
     if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
       return status;
     }
@@ -1003,9 +1003,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   status = forgive(ctx, swept); // states at the voltages that there are
   status = status == DEA_OK && s.level_count > 0 ? search_all(&s) : status;
   if (s.level_count > 0 && status != DEA_E_MEMORY) {
-    dea_status put = put_result(&s);
+    dea_status put = add_result(&s);
     status = status == DEA_OK ? put : status;
-    status = status == DEA_OK ? put_relaxed(&s) : status;
+    status = status == DEA_OK ? append_relaxed(&s) : status;
     status = status == DEA_OK ? refine(&s) : status;
   }
   free_search(&s);
@@ -1018,7 +1018,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 // Figures ----------------------------------------------------------------------------------------
 
 /* The branch's letter, and of its profile the voltage. */
-static void name_look(struct dea_series *look, const struct dea_variant *variant, bool profile)
+static void name_curve(struct dea_series *look, const struct dea_variant *variant, bool profile)
 {
   const struct dea_curve *curve = &variant->curve;
   bool trusted = curve->count > 0 && dea_load_point_valid(&curve->points[curve->count - 1]);
@@ -1064,7 +1064,7 @@ static dea_status add_branches(struct dea_context *ctx, struct dea_panel *panel,
     look = dea_figure_style("", number++);
     look.style = DEA_LINE_MARKED;
     if (!energy) {
-      name_look(&look, &result->variants[i], false);
+      name_curve(&look, &result->variants[i], false);
     }
     DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, &look, &series));
     for (size_t k = 0; k < curve->count; k++) {
@@ -1165,7 +1165,7 @@ static dea_status build_profiles(struct dea_context *ctx, const struct dea_resul
       continue;
     }
     look = dea_figure_style("", number++);
-    name_look(&look, variant, true);
+    name_curve(&look, variant, true);
     const struct dea_profile profile = dea_profile_of_record(shape);
     DEA_TRY(ctx, dea_panel_add_as(ctx, panel, shape->count, &look, &series));
     for (size_t k = 0; k < shape->count; k++) {

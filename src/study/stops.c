@@ -41,9 +41,9 @@ size_t dea_study_stops(const struct dea_design *design, const struct dea_quantit
   return given_count > 0 ? given_count : count;
 }
 
-dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model_type *type,
-                                 struct dea_model *model, const struct dea_device *device,
-                                 const double *voltages_V, size_t count, struct dea_curve *curve)
+dea_status dea_study_add_points(struct dea_context *ctx, const struct dea_model_type *type,
+                                struct dea_model *model, const struct dea_device *device,
+                                const double *voltages_V, size_t count, struct dea_curve *curve)
 {
   for (size_t i = 0; i < count; i++) {
     struct dea_load_point point;

@@ -93,8 +93,8 @@ bool dea_study_known_to(const struct dea_study *study, const struct dea_model_ty
 }
 
 /* A note, but not of a study that all designs ask for. */
-static dea_status say_unknown(struct dea_context *ctx, const struct dea_study *study,
-                              const char *model, bool named)
+static dea_status report_unknown(struct dea_context *ctx, const struct dea_study *study,
+                                 const char *model, bool named)
 {
   if (!named && study->asked == NULL && study->keys == NULL) {
     return DEA_OK;
@@ -224,8 +224,8 @@ dea_status dea_study_check(struct dea_context *ctx, const char *const names[], s
 }
 
 /* Tables of a study, also of one that failed: partial results are results. */
-static dea_status make_tables(struct dea_context *ctx, const struct dea_study *study,
-                              const char *model, struct dea_result *result)
+static dea_status build_tables(struct dea_context *ctx, const struct dea_study *study,
+                               const char *model, struct dea_result *result)
 {
   return study->tables != NULL ? study->tables(ctx, model, result) : DEA_OK;
 }
@@ -236,7 +236,7 @@ struct outcome {
   char message[1024];
 };
 
-static void take(const struct dea_context *ctx, dea_status status, struct outcome *outcome)
+static void add_outcome(const struct dea_context *ctx, dea_status status, struct outcome *outcome)
 {
   if (status != DEA_OK && outcome->status == DEA_OK) {
     outcome->status = status;
@@ -246,8 +246,8 @@ static void take(const struct dea_context *ctx, dea_status status, struct outcom
 
 /* The model for the first study that wants one. A film whose rest is not found is a sweep that ends
  * before its first point, where one is wanted: it too has a verdict. */
-static dea_status make_model(struct dea_context *ctx, const struct dea_model_type *type,
-                             bool sweeps, struct dea_result *result, struct dea_model **out)
+static dea_status build_model(struct dea_context *ctx, const struct dea_model_type *type,
+                              bool sweeps, struct dea_result *result, struct dea_model **out)
 {
   struct dea_curve *curve;
   dea_status status = dea_model_create(ctx, type, result->design, result->device, out);
@@ -277,24 +277,24 @@ dea_status dea_study_run_with(struct dea_context *ctx, const struct dea_model_ty
       continue;
     }
     if (!dea_study_known_to(studies[i], type, result)) {
-      take(ctx, say_unknown(ctx, studies[i], type->name, names != NULL), &first);
+      add_outcome(ctx, report_unknown(ctx, studies[i], type->name, names != NULL), &first);
       continue;
     }
     if (!studies[i]->own_models && model == NULL) {
       const bool sweeps = is_wanted(&dea_study_sweep, names, name_count, result->design);
-      DEA_TRY(ctx, make_model(ctx, type, sweeps, result, &model));
+      DEA_TRY(ctx, build_model(ctx, type, sweeps, result, &model));
     }
     struct dea_model *lent = studies[i]->own_models ? NULL : model;
     dea_status status =
         studies[i]->run != NULL
             ? studies[i]->run(ctx, type, lent, result)
             : studies[i]->run_with(ctx, type, lent, services != NULL ? services : &none, result);
-    take(ctx, status, &first);
+    add_outcome(ctx, status, &first);
     if (status == DEA_E_MEMORY) {
       break;
     }
-    status = make_tables(ctx, studies[i], type->name, result);
-    take(ctx, status, &first);
+    status = build_tables(ctx, studies[i], type->name, result);
+    add_outcome(ctx, status, &first);
     if (first.status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
       break;
     }

@@ -79,9 +79,9 @@ double dea_study_highest_V(const struct dea_result *result);
 /* Solves at voltages [count] in their order and adds the points to a curve, with what the device's
  * monitors show. DEA_E_INTERRUPTED when
  * the run is ended on the way. */
-dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model_type *type,
-                                 struct dea_model *model, const struct dea_device *device,
-                                 const double *voltages_V, size_t count, struct dea_curve *curve);
+dea_status dea_study_add_points(struct dea_context *ctx, const struct dea_model_type *type,
+                                struct dea_model *model, const struct dea_device *device,
+                                const double *voltages_V, size_t count, struct dea_curve *curve);
 /* The field of voltages that a study stops at, in members `voltages_V` and `voltage_count` of its
  * `struct settings`. */
 #define DEA_STUDY_STOPS_FIELD(absent, what, shown)                                                 \

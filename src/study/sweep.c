@@ -163,8 +163,8 @@ static void open_curve(struct dea_curve *curve)
 }
 
 /* Says of a pull-in that it is one of a film without tension, which would not stay flat. */
-static dea_status say_slack_pull_in(struct dea_context *ctx, const struct dea_curve *curve,
-                                    dea_status status)
+static dea_status report_slack_pull_in(struct dea_context *ctx, const struct dea_curve *curve,
+                                       dea_status status)
 {
   char why[sizeof curve->stopped];
   if (status != DEA_E_NO_EQUILIBRIUM || !dea_curve_is_slack(curve)) {
@@ -175,8 +175,8 @@ static dea_status say_slack_pull_in(struct dea_context *ctx, const struct dea_cu
 }
 
 /* Where the prediction ends, as a warning: also for a reader of the notes alone. */
-static dea_status say_trust(struct dea_context *ctx, const struct dea_model_type *type,
-                            const struct dea_curve *curve)
+static dea_status report_trust(struct dea_context *ctx, const struct dea_model_type *type,
+                               const struct dea_curve *curve)
 {
   struct dea_text text = {.ctx = ctx};
   struct dea_trust trust = dea_curve_trust(curve);
@@ -217,11 +217,11 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
       dea_progress(ctx, what, i + 1, total);
     }
   }
-  DEA_TRY(ctx, say_trust(ctx, type, curve));
+  DEA_TRY(ctx, report_trust(ctx, type, curve));
   dea_curve_end(ctx, curve, status);
   if (dea_verdict_of(status)[0] != '\0') {
     DEA_TRY(ctx, add_limit(ctx, type->limit, model, curve));
-    status = dea_curve_end(ctx, curve, say_slack_pull_in(ctx, curve, status));
+    status = dea_curve_end(ctx, curve, report_slack_pull_in(ctx, curve, status));
   }
   return status;
 }

@@ -309,7 +309,7 @@ static void find_voltages(struct player *p, double time_s, bool end)
 }
 
 /* Voltages at next_V, which a step has gone to. */
-static void take_voltages(struct player *p)
+static void set_voltages(struct player *p)
 {
   memcpy(p->now_V, p->next_V, p->source_count * sizeof *p->now_V);
 }
@@ -363,7 +363,7 @@ static dea_status jump(struct dea_context *ctx, struct player *p)
     return status == DEA_E_MEMORY ? status : stop(ctx, p, status);
   }
   p->type->accept(p->model);
-  take_voltages(p);
+  set_voltages(p);
   return keep(ctx, p, &point, true);
 }
 
@@ -382,11 +382,11 @@ static dea_status one_step(struct dea_context *ctx, struct player *p, double end
   if (status != DEA_OK) {
     return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED ? status : stop(ctx, p, status);
   }
-  take_voltages(p);
+  set_voltages(p);
   return keep(ctx, p, &point, last);
 }
 
-static void tell(struct dea_context *ctx, struct player *p)
+static void report_progress(struct dea_context *ctx, struct player *p)
 {
   static const size_t whole = 100;
   size_t done = p->time_s < p->until_s ? (size_t)((double)whole * p->time_s / p->until_s) : whole;
@@ -411,16 +411,16 @@ static dea_status play(struct dea_context *ctx, struct player *p)
                         p->time_s, p->curve->count);
       }
       DEA_TRY(ctx, one_step(ctx, p, end));
-      tell(ctx, p);
+      report_progress(ctx, p);
     }
   }
-  tell(ctx, p);
+  report_progress(ctx, p);
   return DEA_OK;
 }
 
 /* Room for the sources of a device. */
-static dea_status make_sources(struct dea_context *ctx, const struct dea_result *result,
-                               struct player *p)
+static dea_status build_sources(struct dea_context *ctx, const struct dea_result *result,
+                                struct player *p)
 {
   const struct dea_parts *parts = result->design->parts;
   size_t count = parts != NULL ? result->device->layout->channel_count : 1;
@@ -514,8 +514,8 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
   return keep(ctx, p, &point, true);
 }
 
-static dea_status make_room(struct dea_context *ctx, const struct dea_result *result,
-                            struct player *p)
+static dea_status reserve(struct dea_context *ctx, const struct dea_result *result,
+                          struct player *p)
 {
   DEA_TRY(ctx, dea_monitor_set_init(ctx, p->type, result->device, &p->seen));
   p->spare = dea_monitor_values_copy(&p->seen.memory, p->seen.values);
@@ -543,8 +543,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                      .inertia = settings_of(result->design)->inertia.value == 1};
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
   snprintf(p.what, sizeof p.what, "%s transient (%%)", type->name);
-  dea_status status = make_room(ctx, result, &p);
-  status = status == DEA_OK ? make_sources(ctx, result, &p) : status;
+  dea_status status = reserve(ctx, result, &p);
+  status = status == DEA_OK ? build_sources(ctx, result, &p) : status;
   status = status == DEA_OK ? dea_model_create(ctx, type, result->design, result->device, &p.model)
                             : status;
   status = status == DEA_OK ? prepare(ctx, result->design, &p) : status;
@@ -616,7 +616,7 @@ static const struct dea_result_table_type cycle_table =
 static const struct dea_result_table_type creep_table = DEA_RESULT_TABLE(
     study_name, "creep", creep_columns, .title = "farthest value of each cycle", .where = ALL);
 
-static dea_status put_facts(struct dea_context *ctx, const struct dea_curve *curve, int column,
+static dea_status add_facts(struct dea_context *ctx, const struct dea_curve *curve, int column,
                             const char *model, struct dea_result *result)
 {
   struct dea_energy_balance e;
@@ -634,7 +634,7 @@ static dea_status put_facts(struct dea_context *ctx, const struct dea_curve *cur
   return DEA_OK;
 }
 
-static dea_status put_cycles(struct dea_context *ctx, const struct dea_cycle *cycles, size_t count,
+static dea_status add_cycles(struct dea_context *ctx, const struct dea_cycle *cycles, size_t count,
                              int column, const char *model, struct dea_result *result)
 {
   struct dea_result_table *table;
@@ -669,13 +669,13 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
     return DEA_OK;
   }
   int column = dea_time_series_column(curve);
-  DEA_TRY(ctx, put_facts(ctx, curve, column, model, result));
+  DEA_TRY(ctx, add_facts(ctx, curve, column, model, result));
   if (column < 0 || result->design->drive.waveform == NULL) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_time_series_cycles(ctx, curve, result->design->drive.waveform, column, &cycles,
                                       &count));
-  dea_status status = put_cycles(ctx, cycles, count, column, model, result);
+  dea_status status = add_cycles(ctx, cycles, count, column, model, result);
   dea_free(ctx, cycles);
   return status;
 }

@@ -183,7 +183,7 @@ static bool tie(struct laws *laws, size_t i, const struct dea_device_param *para
   return false;
 }
 
-static void take_law(void *user, const struct dea_material_number *number)
+static void add_law(void *user, const struct dea_material_number *number)
 {
   struct laws *laws = user;
   struct work *w = laws->w;
@@ -221,7 +221,7 @@ static void take_law(void *user, const struct dea_material_number *number)
 static dea_status add_laws(struct work *w)
 {
   struct laws laws = {.w = w, .first = w->count};
-  dea_material_numbers(w->result->device, w->result->design->parts != NULL, take_law, &laws);
+  dea_material_numbers(w->result->device, w->result->design->parts != NULL, add_law, &laws);
   for (size_t a = laws.first; a < w->count; a++) {
     for (size_t b = laws.first; b < w->count; b++) {
       const struct dea_material *material = material_of(w, a);
@@ -263,7 +263,7 @@ static dea_status find_params(struct work *w, const struct settings *settings)
 // Other values ------------------------------------------------------------------------------------
 
 /* The studies that have a band, of the device with p; *out: NULL where it cannot be built. */
-static dea_status take(struct work *w, const double *p, struct dea_result **out)
+static dea_status run_changed(struct work *w, const double *p, struct dea_result **out)
 {
   const char *names[KINDS];
   size_t count = 0;
@@ -288,9 +288,9 @@ static dea_status vary(struct work *w)
     memcpy(p, w->value, w->count * sizeof *p);
     w->step[j] = fmax(w->std[j], least * fabs(w->value[j]));
     p[j] = w->value[j] + w->step[j];
-    status = take(w, p, &w->plus[j]);
+    status = run_changed(w, p, &w->plus[j]);
     p[j] = w->value[j] - w->step[j];
-    status = status == DEA_OK ? take(w, p, &w->minus[j]) : status;
+    status = status == DEA_OK ? run_changed(w, p, &w->minus[j]) : status;
     dea_progress(w->ctx, what, j + 1, w->count);
   }
   dea_finding_trial_end(w->ctx, errors);
@@ -419,7 +419,7 @@ static double ends_at(const struct work *w, const struct dea_result *varied)
 }
 
 /* Says where bands are of one side only, as the device on the other side has come to its end. */
-static dea_status tell_sides(struct work *w)
+static dea_status report_sides(struct work *w)
 {
   for (size_t j = 0; j < w->count; j++) {
     for (int side = -1; side <= 1; side += 2) {
@@ -539,7 +539,7 @@ static dea_status find_all(struct work *w, const struct dea_settings *given)
       (struct dea_design_bytes){w->result->design->file, dea_text_get(&w->text), w->text.length};
   DEA_TRY(ctx, vary(w));
   DEA_TRY(ctx, fill_bands(w));
-  DEA_TRY(ctx, tell_sides(w));
+  DEA_TRY(ctx, report_sides(w));
   return add_table(w);
 }
 

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static void take_size(const struct dea_model_type *type, const struct dea_model *model,
-                      double refinement, struct dea_variant *variant)
+static void set_size(const struct dea_model_type *type, const struct dea_model *model,
+                     double refinement, struct dea_variant *variant)
 {
   if (type->size != NULL) {
     type->size(model, &variant->size);
@@ -22,9 +22,9 @@ static dea_status use_model(struct dea_context *ctx, const struct dea_model_type
                             struct dea_variant *variant)
 {
   struct dea_profile profile;
-  take_size(type, model, run->settings.refinement, variant);
-  DEA_TRY(ctx, dea_study_take_points(ctx, type, model, run->device, run->voltages_V,
-                                     run->voltage_count, &variant->curve));
+  set_size(type, model, run->settings.refinement, variant);
+  DEA_TRY(ctx, dea_study_add_points(ctx, type, model, run->device, run->voltages_V,
+                                    run->voltage_count, &variant->curve));
   if (type->profile != NULL && variant->curve.count > 0) {
     DEA_TRY(ctx, dea_model_profile(ctx, type, model, &profile));
     DEA_TRY(ctx, dea_variant_set_profile(ctx, variant,
@@ -70,7 +70,7 @@ dea_status dea_variant_of_sweep(struct dea_context *ctx, const struct dea_model_
   const struct dea_profile_record *last = last_profile(result, type->name);
   struct dea_variant *variant;
   DEA_TRY(ctx, dea_result_add_variant(ctx, result, type->name, study, name, &variant));
-  take_size(type, model, dea_model_settings_of(result->design).refinement, variant);
+  set_size(type, model, dea_model_settings_of(result->design).refinement, variant);
   variant->wall_s = NAN;
   for (size_t i = 0; i < sweep->count; i++) {
     DEA_TRY(ctx, dea_curve_add_point(ctx, &variant->curve, &sweep->points[i]));

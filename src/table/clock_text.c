@@ -3,7 +3,7 @@
 static const double day_s = 86400;
 
 /* Digits at the start, `least` to `most` of them; takes them out of the field. */
-static bool take_digits(struct dea_slice *field, size_t least, size_t most, int *value)
+static bool read_digits(struct dea_slice *field, size_t least, size_t most, int *value)
 {
   size_t n = 0;
   *value = 0;
@@ -15,7 +15,7 @@ static bool take_digits(struct dea_slice *field, size_t least, size_t most, int 
   return n >= least;
 }
 
-static bool take(struct dea_slice *field, const char *one_of, char *found)
+static bool read_letter(struct dea_slice *field, const char *one_of, char *found)
 {
   for (const char *c = one_of; *c != '\0' && field->length > 0; c++) {
     if (field->text[0] == *c) {
@@ -45,30 +45,30 @@ static bool days_of(int year, int month, int day, double *days)
 }
 
 /* A date and what parts it from the time; true and nothing taken when there is none. */
-static bool take_date(struct dea_slice *field, double *days, bool *dated)
+static bool read_date(struct dea_slice *field, double *days, bool *dated)
 {
   struct dea_slice rest = *field;
   int a, b, c;
   char mark = '\0', again = '\0', gap;
   *days = 0;
-  *dated = take_digits(&rest, 1, 4, &a) && take(&rest, "-/.", &mark);
+  *dated = read_digits(&rest, 1, 4, &a) && read_letter(&rest, "-/.", &mark);
   if (!*dated) {
     return true;
   }
   bool year_first = field->length > 4 && field->text[4] == mark;
-  bool good = take_digits(&rest, 1, 2, &b) && take(&rest, "-/.", &again) && again == mark &&
-              take_digits(&rest, year_first ? 1 : 4, year_first ? 2 : 4, &c) &&
-              take(&rest, " T", &gap) && (year_first ? mark != '.' : mark == '.');
+  bool good = read_digits(&rest, 1, 2, &b) && read_letter(&rest, "-/.", &again) && again == mark &&
+              read_digits(&rest, year_first ? 1 : 4, year_first ? 2 : 4, &c) &&
+              read_letter(&rest, " T", &gap) && (year_first ? mark != '.' : mark == '.');
   *field = rest;
   return good && (year_first ? days_of(a, b, c, days) : days_of(c, b, a, days));
 }
 
 /* Digits behind the point. */
-static double take_part(struct dea_slice *field)
+static double read_part(struct dea_slice *field)
 {
   double value = 0, unit = 1;
   int digit;
-  while (take_digits(field, 1, 1, &digit)) {
+  while (read_digits(field, 1, 1, &digit)) {
     value = 10 * value + digit;
     unit *= 10;
   }
@@ -76,19 +76,19 @@ static double take_part(struct dea_slice *field)
 }
 
 /* "Z", "+01:00", "-0330" or "+01" in seconds; true and nothing taken for anything else. */
-static bool take_zone(struct dea_slice *field, double *zone_s)
+static bool read_zone(struct dea_slice *field, double *zone_s)
 {
   int hours, minutes = 0;
   char mark;
   *zone_s = 0;
-  if (take(field, "Z", &mark) || !take(field, "+-", &mark)) {
+  if (read_letter(field, "Z", &mark) || !read_letter(field, "+-", &mark)) {
     return true;
   }
   double sign = mark == '-' ? -1 : 1;
-  bool good = take_digits(field, 2, 2, &hours);
+  bool good = read_digits(field, 2, 2, &hours);
   if (good && field->length > 0) {
-    take(field, ":", &mark);
-    good = take_digits(field, 2, 2, &minutes);
+    read_letter(field, ":", &mark);
+    good = read_digits(field, 2, 2, &minutes);
   }
   *zone_s = good ? sign * (3600.0 * hours + 60.0 * minutes) : 0;
   return good;
@@ -100,19 +100,19 @@ bool dea_clock_text(struct dea_slice field, double *days, double *seconds, bool 
   double part = 0, zone_s = 0;
   char mark;
   field = dea_slice_trim(field);
-  if (!take_date(&field, days, dated)) {
+  if (!read_date(&field, days, dated)) {
     return false;
   }
   field = dea_slice_trim(field);
-  if (!take_digits(&field, 1, 2, &hours) || !take(&field, ":", &mark) ||
-      !take_digits(&field, 2, 2, &minutes) || !take(&field, ":", &mark) ||
-      !take_digits(&field, 2, 2, &whole) || hours > 23 || minutes > 59 || whole > 60) {
+  if (!read_digits(&field, 1, 2, &hours) || !read_letter(&field, ":", &mark) ||
+      !read_digits(&field, 2, 2, &minutes) || !read_letter(&field, ":", &mark) ||
+      !read_digits(&field, 2, 2, &whole) || hours > 23 || minutes > 59 || whole > 60) {
     return false;
   }
-  if (take(&field, ".,", &mark)) {
-    part = take_part(&field);
+  if (read_letter(&field, ".,", &mark)) {
+    part = read_part(&field);
   }
-  if (*dated && !take_zone(&field, &zone_s)) {
+  if (*dated && !read_zone(&field, &zone_s)) {
     return false;
   }
   *seconds = 3600.0 * hours + 60.0 * minutes + whole + part - zone_s;

@@ -40,7 +40,7 @@ bool dea_csv_is_blank(struct dea_slice line)
   return true;
 }
 
-static dea_status take_sample(struct sample *sample, struct dea_slice text)
+static dea_status read_sample(struct sample *sample, struct dea_slice text)
 {
   struct dea_lines lines = {text.text, text.text + text.length, 0};
   struct dea_slice line;
@@ -406,7 +406,7 @@ static dea_status find_dialect(struct sample *sample, struct dea_slice text, boo
 {
   struct candidate best;
   bool found = false;
-  DEA_TRY(sample->ctx, take_sample(sample, text));
+  DEA_TRY(sample->ctx, read_sample(sample, text));
   choose(sample, flags, flags + DEA_TABLE_COLUMNS_MAX, &best);
   DEA_TRY(sample->ctx, sample->count > 0 ? refuse_thousands(sample, &best, flags, &found) : DEA_OK);
   if (found) {

@@ -170,7 +170,7 @@ static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
 }
 
 /* "Sample rate;1000 Hz" and the like above the numbers: a column of one value. */
-static dea_status take_clock(struct dea_context *ctx, struct dea_slice line, char decimal,
+static dea_status read_clock(struct dea_context *ctx, struct dea_slice line, char decimal,
                              struct dea_table *table)
 {
   char key[KEY_SIZE];
@@ -226,7 +226,7 @@ static dea_status read_preamble(struct dea_context *ctx, struct dea_slice text,
       line = dea_slice_trim(line);
       line = dea_slice_trim((struct dea_slice){line.text + 1, line.length - 1});
     }
-    DEA_TRY(ctx, take_clock(ctx, line, dialect->decimal, table));
+    DEA_TRY(ctx, read_clock(ctx, line, dialect->decimal, table));
   }
   return DEA_OK;
 }

@@ -17,7 +17,7 @@ static int utf16_mark(const unsigned char *bytes, size_t length)
   return bytes[0] == 0xff && bytes[1] == 0xfe ? 1 : bytes[0] == 0xfe && bytes[1] == 0xff ? 2 : 0;
 }
 
-static size_t put_letter(unsigned code, char *out)
+static size_t add_letter(unsigned code, char *out)
 {
   if (code < 0x80) {
     out[0] = (char)code;
@@ -56,7 +56,7 @@ static size_t to_utf8(const unsigned char *bytes, size_t units, bool big, char *
       }
     }
     code = code == 0 || (code >= 0xd800 && code < 0xe000) ? 0xfffd : code;
-    n += put_letter(code, out + n);
+    n += add_letter(code, out + n);
   }
   return n;
 }
@@ -93,7 +93,7 @@ struct letters {
   bool cyrillic;     // all are letters of Windows-1251
 };
 
-static struct letters look_at_letters(const unsigned char *bytes, size_t length)
+static struct letters find_encoding(const unsigned char *bytes, size_t length)
 {
   struct letters l = {.pairs = true, .cyrillic = true};
   size_t run = 0;
@@ -130,7 +130,7 @@ static struct letters look_at_letters(const unsigned char *bytes, size_t length)
 static const char *encoding_of(const unsigned char *bytes, size_t length)
 {
   enum { ENOUGH = 2 };
-  const struct letters l = look_at_letters(bytes, length);
+  const struct letters l = find_encoding(bytes, length);
   if (l.pairs && l.count >= ENOUGH) {
     return l.far > 0 && !(l.cyrillic && !l.odd && l.runs > 0) ? "GB18030" : NULL;
   }

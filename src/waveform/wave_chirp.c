@@ -30,8 +30,8 @@ static const struct dea_field fields[] = {
                    .default_text = "logarithmic"),
 };
 
-static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
-                       struct dea_waveform *out)
+static dea_status build(const struct dea_reader *reader, const void *data, const char *beside,
+                        struct dea_waveform *out)
 {
   (void)reader;
   (void)beside;

@@ -39,7 +39,7 @@
     .example = "50 %"                                                                              \
   }
 
-/* Record and type of a kind, at the end of its file, which has `fields`, `struct raw` and `make`;
+/* Record and type of a kind, at the end of its file, which has `fields`, `struct raw` and `build`;
  * further members of the type, at least one. */
 #define DEA_WAVE_TYPE(word, meaning, ...)                                                          \
   const struct dea_record dea_wave_##word##_record = {#word, meaning, fields,                      \
@@ -47,7 +47,7 @@
   const struct dea_wave_type dea_wave_##word = {.name = #word,                                     \
                                                 .record = &dea_wave_##word##_record,               \
                                                 .raw_size = sizeof(struct raw),                    \
-                                                .make = make,                                      \
+                                                .make = build,                                     \
                                                 __VA_ARGS__}
 
 /* Room for knots and blocks in a waveform that has none. DEA_E_MEMORY. */

@@ -54,8 +54,8 @@ static dea_status count_levels(const struct dea_reader *reader, const struct raw
                          raw->from_V.si, raw->to_V.si, raw->step_V.si, LEVELS_MAX);
 }
 
-static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
-                       struct dea_waveform *out)
+static dea_status build(const struct dea_reader *reader, const void *data, const char *beside,
+                        struct dea_waveform *out)
 {
   (void)beside;
   const struct raw *raw = data;

@@ -17,8 +17,8 @@ static const struct dea_field fields[] = {
                   .above_min = true, .default_text = "10 s"),
 };
 
-static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
-                       struct dea_waveform *out)
+static dea_status build(const struct dea_reader *reader, const void *data, const char *beside,
+                        struct dea_waveform *out)
 {
   (void)beside;
   const struct raw *raw = data;

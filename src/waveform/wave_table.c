@@ -39,8 +39,8 @@ static const struct dea_csv_wanted columns[2] = {
 };
 
 /* Knots of the rows. Errors are findings. */
-static dea_status take_rows(struct dea_context *ctx, const struct dea_csv_columns *table,
-                            struct dea_waveform *w)
+static dea_status get_rows(struct dea_context *ctx, const struct dea_csv_columns *table,
+                           struct dea_waveform *w)
 {
   const double *time_s = table->values[TIME], *voltage_V = table->values[VOLTAGE];
   for (size_t i = 0; i < table->rows; i++) {
@@ -63,8 +63,8 @@ static dea_status take_rows(struct dea_context *ctx, const struct dea_csv_column
                                "a table needs two times at least");
 }
 
-static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
-                       struct dea_waveform *out)
+static dea_status build(const struct dea_reader *reader, const void *data, const char *beside,
+                        struct dea_waveform *out)
 {
   const struct raw *raw = data;
   struct dea_context *ctx = reader->ctx;
@@ -84,7 +84,7 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   status = dea_wave_room(ctx, out, table.rows, 1);
   if (status == DEA_OK) {
     dea_wave_open(out, 0, 1, 1);
-    status = take_rows(ctx, &table, out);
+    status = get_rows(ctx, &table, out);
   }
   dea_csv_columns_free(ctx, &table);
   if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) == errors) {

@@ -37,7 +37,7 @@ static double taken(const struct dea_worker *aside, dea_status wanted)
   const char *bytes;
   size_t length;
   double number = NAN;
-  assert_int_equal(dea_worker_take(ctx, aside, &bytes, &length), wanted);
+  assert_int_equal(dea_worker_collect(ctx, aside, &bytes, &length), wanted);
   assert_true(length == sizeof number || (length == 0 && wanted == DEA_E_TOOL));
   if (length > 0) {
     memcpy(&number, bytes, sizeof number);

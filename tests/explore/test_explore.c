@@ -420,7 +420,7 @@ static void emulate(size_t keys, int level, double (*f)(const double *share, dou
       out->flags[c * VOLTS + k] = 0;
     }
   }
-  assert_int_equal(dea_emulator_make(ctx, &out->e), DEA_OK);
+  assert_int_equal(dea_emulator_build(ctx, &out->e), DEA_OK);
 }
 
 /* Of degree 4 in each and of total degree within the grid of level 2, times degree 4 in V. */

@@ -194,10 +194,10 @@ TEST(test_scatter)
     assert_close(best.f[0], 2 * sqrt(2) + 2 * far, 2e-6, 0);
     assert_int_equal(dea_store_open(ctx, in_folder(name), "q", &evaluator, NULL, &search.store),
                      DEA_OK);
-    assert_true(dea_search_look(&search, best.p, looked));
+    assert_true(dea_search_compute(&search, best.p, looked));
     assert_close(looked[0], best.f[0], 1e-12, 0);
     best.p[0] += d; // one that scatters stands for no design of its own
-    assert_false(dea_search_look(&search, best.p, looked));
+    assert_false(dea_search_compute(&search, best.p, looked));
     dea_store_close(search.store);
   }
   gradients = false;

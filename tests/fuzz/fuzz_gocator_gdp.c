@@ -40,7 +40,7 @@ static void feed(struct dea_context *ctx, struct stream *s, const uint8_t *bytes
       return;
     }
     if (event == DEA_GDP_STAMPS) {
-      dea_gocator_frames_see(&s->frames, &s->reader.stamps[0], 1);
+      dea_gocator_frames_add(&s->frames, &s->reader.stamps[0], 1);
     } else if (event == DEA_GDP_MEASUREMENT) {
       s->sum += s->reader.measurement.thousandths;
     } else if (event == DEA_GDP_PROFILES) {

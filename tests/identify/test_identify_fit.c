@@ -46,7 +46,7 @@ TEST(test_relaxation_after_a_jump)
   struct dea_coupon coupon = {.mode = DEA_UNIAXIAL, .rows = 4, .stretch = stretch};
   struct dea_coupon_shares shares;
   double stress[4];
-  assert_int_equal(dea_coupon_shares_make(&arena, &coupon, 1, &shares), DEA_OK);
+  assert_int_equal(dea_coupon_shares_build(&arena, &coupon, 1, &shares), DEA_OK);
   assert_int_equal(dea_coupon_follow(&arena, time_s, 1e-9, &coupon), DEA_OK);
   assert_int_equal(dea_coupon_stress(&material, &coupon, &shares, stress), DEA_OK);
   for (size_t i = 0; i < 4; i++) {
@@ -67,7 +67,7 @@ TEST(test_branches_against_the_film)
   struct dea_equal_tensor A = {1, 1};
   struct dea_coupon_shares shares;
   double stress[1], t = 0, l = 1;
-  assert_int_equal(dea_coupon_shares_make(&arena, &coupon, 1, &shares), DEA_OK);
+  assert_int_equal(dea_coupon_shares_build(&arena, &coupon, 1, &shares), DEA_OK);
   assert_int_equal(dea_coupon_follow(&arena, time_s, 0, &coupon), DEA_OK);
   assert_int_equal(dea_coupon_stress(&material, &coupon, &shares, stress), DEA_OK);
   for (size_t n = 1; n < coupon.node_count; n++) {
@@ -260,7 +260,7 @@ TEST(test_branches_find_themselves)
     }
     assert_int_equal(dea_coupon_follow(&trial.memory, series->time_s, 4, &series->coupon), DEA_OK);
     struct dea_coupon_shares shares;
-    assert_int_equal(dea_coupon_shares_make(&trial.memory, &series->coupon, 2, &shares), DEA_OK);
+    assert_int_equal(dea_coupon_shares_build(&trial.memory, &series->coupon, 2, &shares), DEA_OK);
     assert_int_equal(dea_coupon_stress(&material, &series->coupon, &shares, series->stress_Pa),
                      DEA_OK);
     for (size_t i = 0; i < series->rows; i++) { // noise of 0.1 %

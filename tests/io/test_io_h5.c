@@ -48,9 +48,9 @@ TEST(test_link)
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   dea_h5_begin(&h, ctx, "links.h5");
-  hid_t file = dea_h5_file_make(&h);
-  hid_t one = dea_h5_group_make(&h, file, "one"), other = dea_h5_group_make(&h, file, "other");
-  dea_h5_put_array(&h, one, "x", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, 3, numbers, "m", "lengths");
+  hid_t file = dea_h5_file_create(&h);
+  hid_t one = dea_h5_group_create(&h, file, "one"), other = dea_h5_group_create(&h, file, "other");
+  dea_h5_write_array(&h, one, "x", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, 3, numbers, "m", "lengths");
   dea_h5_link(&h, one, "x", other);
   assert_int_equal(h.status, DEA_OK);
   assert_true(dea_h5_has(&h, other, "x"));
@@ -78,13 +78,13 @@ TEST(test_long_text_of_older_files)
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   dea_h5_begin(&h, ctx, "texts.h5");
-  hid_t file = dea_h5_file_make(&h);
+  hid_t file = dea_h5_file_create(&h);
   hid_t space = H5Screate(H5S_SCALAR), type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, sizeof text);
   H5Tset_cset(type, H5T_CSET_UTF8);
   hid_t old = H5Dcreate2(file, "old", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   assert_true(H5Dwrite(old, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0);
-  dea_h5_put_long_text(&h, file, "new", text);
+  dea_h5_write_long_text(&h, file, "new", text);
   char *of_old = dea_h5_get_long_text(&h, file, "old");
   char *of_new = dea_h5_get_long_text(&h, file, "new");
   assert_int_equal(h.status, DEA_OK);

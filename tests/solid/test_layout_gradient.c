@@ -567,7 +567,7 @@ TEST(test_tension_of_a_bender)
                                            {at.voltage_V * (1 - 1e-5), at.voltage_V * (1 + 1e-5)},
                                            2e-5,
                                            {NULL, NULL}};
-  const struct dea_gradient_ask ask = {
+  const struct dea_gradient_request ask = {
       .changes = &change, .change_count = 1, .columns = &column, .column_count = 1};
   assert_int_equal(type->gradient(ctx, at.model, &ask, &slope), DEA_OK);
   for (int n = 0; n < 3; n++) {
@@ -651,7 +651,7 @@ TEST(test_what_cannot_follow)
     assert_int_equal(read_and_build(ctx, cone, &all[i].change, 1, &design, &device), DEA_OK);
     const struct dea_design_change change = {
         {at.device, device}, {at.voltage_V, at.voltage_V}, 1e-6, {NULL, NULL}};
-    const struct dea_gradient_ask ask = {
+    const struct dea_gradient_request ask = {
         .changes = &change, .change_count = 1, .columns = &column, .column_count = 1};
     assert_int_equal(type->gradient(ctx, at.model, &ask, &slope), DEA_OK);
     assert_int_equal(!isnan(slope), all[i].follows);
@@ -712,7 +712,8 @@ static double find_critical(struct at *at, const struct dea_device *device,
   struct dea_model_settings *settings = &at->settings;
   *settings = dea_model_settings_of(at->design);
   settings->mesh_from = at->model;
-  const struct dea_critical_ask ask = {dea_model_find("3d"), device, settings, kind, first_V, 2e3};
+  const struct dea_critical_request ask = {
+      dea_model_find("3d"), device, settings, kind, first_V, 2e3};
   if (dea_critical_find(ctx, &ask, out) != DEA_OK || isnan(out->voltage_V)) {
     fail_msg("%s: %s %s", dea_event_name(kind), dea_context_message(ctx), out->why);
   }

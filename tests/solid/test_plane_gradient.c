@@ -165,7 +165,7 @@ static struct dea_critical find_critical(const struct dea_model_type *type,
                                          const struct dea_device *device, enum dea_event_kind kind)
 {
   struct dea_critical out;
-  const struct dea_critical_ask ask = {type, device, NULL, kind, 1e3, 5e4};
+  const struct dea_critical_request ask = {type, device, NULL, kind, 1e3, 5e4};
   if (dea_critical_find(ctx, &ask, &out) != DEA_OK || isnan(out.voltage_V)) {
     fail_msg("%s: no %s: %s %s", type->name, dea_event_name(kind), out.why,
              dea_context_message(ctx));

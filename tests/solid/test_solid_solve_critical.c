@@ -16,7 +16,7 @@ static struct dea_critical find_critical(const struct state *at,
                                          enum dea_event_kind kind)
 {
   struct dea_critical out;
-  const struct dea_critical_ask ask = {solid, &at->device, settings, kind, at->voltage_V, 2e4};
+  const struct dea_critical_request ask = {solid, &at->device, settings, kind, at->voltage_V, 2e4};
   if (dea_critical_find(ctx, &ask, &out) != DEA_OK || isnan(out.voltage_V)) {
     fail_msg("%s", dea_context_message(ctx));
   }
@@ -137,7 +137,7 @@ static double exact_slope(const struct state *at, int number)
   double at_V[2];
   for (int k = 0; k < 2; k++) {
     struct state there = changed(at, number, k == 0 ? -share : share);
-    const struct dea_critical_ask ask = {
+    const struct dea_critical_request ask = {
         dea_model_find("axisymmetric"), &there.device, NULL, DEA_EVENT_PULL_IN, 100, 2e4};
     struct dea_critical disc;
     assert_int_equal(dea_critical_find(ctx, &ask, &disc), DEA_OK);

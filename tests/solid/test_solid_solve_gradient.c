@@ -135,10 +135,10 @@ static struct dea_load_point find_slopes(const struct state *at,
     }
     changes[i].width = 2 * share;
   }
-  const struct dea_gradient_ask ask = {.changes = changes,
-                                       .change_count = (size_t)count,
-                                       .columns = columns,
-                                       .column_count = (size_t)key_count(at)};
+  const struct dea_gradient_request ask = {.changes = changes,
+                                           .change_count = (size_t)count,
+                                           .columns = columns,
+                                           .column_count = (size_t)key_count(at)};
   assert_ok(solid->gradient(ctx, model, &ask, out));
   if (keep != NULL) {
     *keep = model;
@@ -350,11 +350,11 @@ TEST(test_higher_modes)
     changes[i / 2].voltage_V[i % 2] = sides[i].voltage_V;
   }
   find_frequencies(&at, NULL, &model, base);
-  const struct dea_gradient_ask ask = {.changes = changes,
-                                       .change_count = COUNT,
-                                       .columns = columns,
-                                       .modes = modes,
-                                       .column_count = MODES};
+  const struct dea_gradient_request ask = {.changes = changes,
+                                           .change_count = COUNT,
+                                           .columns = columns,
+                                           .modes = modes,
+                                           .column_count = MODES};
   assert_int_equal(solid->gradient(ctx, model, &ask, slopes), DEA_OK);
   step_aside(&at, model);
   for (int a = 0; a < COUNT; a++) {
@@ -393,7 +393,7 @@ TEST(test_pair_of_modes)
   make_changes(&at, &number, 1, sides, &change);
   change.voltage_V[0] = change.voltage_V[1] = at.voltage_V;
   solve(&at, &whole, NULL, &model);
-  const struct dea_gradient_ask ask = {
+  const struct dea_gradient_request ask = {
       .changes = &change, .change_count = 1, .columns = columns, .modes = modes, .column_count = 2};
   assert_int_equal(solid->gradient(ctx, model, &ask, slopes), DEA_OK);
   assert_true(!isnan(slopes[0]) && isnan(slopes[1]));
@@ -471,7 +471,7 @@ TEST(test_mesh_that_cannot_follow)
   solve(&at, &settings, NULL, &model);
   const struct dea_design_change change = {
       {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1, {NULL, NULL}};
-  const struct dea_gradient_ask ask = {
+  const struct dea_gradient_request ask = {
       .changes = &change, .change_count = 1, .columns = &column, .column_count = 1};
   assert_int_equal(solid->gradient(ctx, model, &ask, &slope), DEA_OK);
   assert_true(isnan(slope));

@@ -44,12 +44,12 @@ static struct dea_load_point find_slopes(const struct state *at,
     columns[k] = dea_point_column_find(keys[k]);
   }
   make_changes(at, numbers, count, sides, changes);
-  const struct dea_gradient_ask ask = {.changes = changes,
-                                       .change_count = count,
-                                       .columns = columns,
-                                       .column_count = KEYS,
-                                       .holds_stretch = true,
-                                       .stretch = stretch};
+  const struct dea_gradient_request ask = {.changes = changes,
+                                           .change_count = count,
+                                           .columns = columns,
+                                           .column_count = KEYS,
+                                           .holds_stretch = true,
+                                           .stretch = stretch};
   struct dea_load_point there = go(at, settings, stretch, &model);
   assert_ok(solid->gradient(ctx, model, &ask, out));
   solid->destroy(ctx, model);
@@ -128,7 +128,7 @@ TEST(test_where_it_turns)
   enum { COUNT = sizeof numbers / sizeof numbers[0], STRETCHES = 3 };
   const struct dea_model_settings film = {.film = DEA_FILM_MEMBRANE};
   const struct state at = stretched_disc();
-  const struct dea_critical_ask ask = {solid, &at.device, &film, DEA_EVENT_PULL_IN, 100, 2e4};
+  const struct dea_critical_request ask = {solid, &at.device, &film, DEA_EVENT_PULL_IN, 100, 2e4};
   struct dea_critical pull_in;
   struct state sides[2 * COUNT];
   struct dea_design_change changes[COUNT];

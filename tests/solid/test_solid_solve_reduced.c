@@ -235,7 +235,7 @@ TEST(test_cone)
   struct dea_device *device = hung_new();
   struct dea_reduced_order *order;
   struct dea_model *model[2];
-  assert_int_equal(dea_reduced_order_make(ctx, device, &settings, &order), DEA_OK);
+  assert_int_equal(dea_reduced_order_build(ctx, device, &settings, &order), DEA_OK);
   assert_in_range((int)(1e6 * order->error), 0, 1000); // 1e-3
   check_file(order, device);
   check_source(order, device);

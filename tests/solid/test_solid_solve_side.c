@@ -174,7 +174,7 @@ static bool take_front(struct dea_solid_report *report)
 {
   const struct dea_film_band film = {0, device.film_thickness_m};
   bool moved;
-  assert_ok(dea_buckling_branch_take(ctx, solid, grid, &film, DEA_BRANCH_FIBRES, report, &moved));
+  assert_ok(dea_buckling_branch_select(ctx, solid, grid, &film, DEA_BRANCH_FIBRES, report, &moved));
   return moved;
 }
 

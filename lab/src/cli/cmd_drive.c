@@ -149,23 +149,23 @@ static void print_plan(struct dea_cli *cli, const struct dea_protocol *protocol,
 static json_t *plan_json(const struct dea_protocol *protocol, const struct dea_protocol_plan *plan)
 {
   json_t *json = json_object();
-  dea_json_put_count(json, "cycles", plan->cycles);
-  dea_json_put_count(json, "samples", plan->samples);
-  dea_json_put_count(json, "channels", protocol->input_count);
-  dea_json_put(json, "duration_s", plan->duration_s);
-  dea_json_put(json, "rate_Hz", protocol->rate_Hz.si);
-  dea_json_put(json, "lowest_V", plan->lowest_V);
-  dea_json_put(json, "highest_V", plan->highest_V);
-  dea_json_put(json, "largest_field_V_per_m", plan->largest_field_V_per_m);
-  dea_json_put(json, "allowed_field_V_per_m", plan->allowed_field_V_per_m);
-  dea_json_put(json, "breakdown_field_V_per_m", plan->breakdown_field_V_per_m);
-  dea_json_put(json, "breakdown_probability", plan->breakdown_probability);
-  dea_json_put(json, "breakdown_probability_low", plan->breakdown_probability_band[0]);
-  dea_json_put(json, "breakdown_probability_high", plan->breakdown_probability_band[1]);
-  dea_json_put(json, "pull_in_V", plan->pull_in_V);
-  dea_json_put(json, "capacitance_F", plan->capacitance_F);
-  dea_json_put(json, "stored_energy_J", plan->stored_energy_J);
-  dea_json_put(json, "rise_s", plan->rise_s);
+  dea_json_add_count(json, "cycles", plan->cycles);
+  dea_json_add_count(json, "samples", plan->samples);
+  dea_json_add_count(json, "channels", protocol->input_count);
+  dea_json_add(json, "duration_s", plan->duration_s);
+  dea_json_add(json, "rate_Hz", protocol->rate_Hz.si);
+  dea_json_add(json, "lowest_V", plan->lowest_V);
+  dea_json_add(json, "highest_V", plan->highest_V);
+  dea_json_add(json, "largest_field_V_per_m", plan->largest_field_V_per_m);
+  dea_json_add(json, "allowed_field_V_per_m", plan->allowed_field_V_per_m);
+  dea_json_add(json, "breakdown_field_V_per_m", plan->breakdown_field_V_per_m);
+  dea_json_add(json, "breakdown_probability", plan->breakdown_probability);
+  dea_json_add(json, "breakdown_probability_low", plan->breakdown_probability_band[0]);
+  dea_json_add(json, "breakdown_probability_high", plan->breakdown_probability_band[1]);
+  dea_json_add(json, "pull_in_V", plan->pull_in_V);
+  dea_json_add(json, "capacitance_F", plan->capacitance_F);
+  dea_json_add(json, "stored_energy_J", plan->stored_energy_J);
+  dea_json_add(json, "rise_s", plan->rise_s);
   return json;
 }
 
@@ -223,10 +223,10 @@ static dea_status state_folder(struct dea_cli *cli, char **out)
 }
 
 /* Why an output is not known to be at 0 V. */
-static void put_why(json_t *json, struct dea_zero zero)
+static void add_reason(json_t *json, struct dea_zero zero)
 {
   if (zero.state == DEA_ZERO_UNKNOWN && zero.why != NULL) {
-    dea_json_put_text(json, "output_why", zero.why);
+    dea_json_add_text(json, "output_why", zero.why);
   }
 }
 
@@ -243,9 +243,9 @@ static int zero(struct dea_cli *cli, const struct request *request, struct dea_p
   dea_zero_text(output, known);
   if (request->json) {
     json_t *json = json_object();
-    dea_json_put_text(json, "output", dea_zero_name(output.state));
-    dea_json_put(json, "output_V", output.volts);
-    put_why(json, output);
+    dea_json_add_text(json, "output", dea_zero_name(output.state));
+    dea_json_add(json, "output_V", output.volts);
+    add_reason(json, output);
     cli_print_json(json);
   } else {
     printf("  %-16s  %s\n", "output", known);
@@ -259,7 +259,7 @@ static int zero(struct dea_cli *cli, const struct request *request, struct dea_p
 
 /* Where a guard may say something after the program's end: a terminal or a file, of which nobody
  * waits for the end; -1: nowhere. */
-static int told_later(void)
+static int report_at_exit(void)
 {
   struct stat info;
   bool file = fstat(STDERR_FILENO, &info) == 0 && S_ISREG(info.st_mode);
@@ -274,7 +274,7 @@ static dea_status play(struct dea_cli *cli, const struct request *request,
                                       .file = file,
                                       .checked = request->checked,
                                       .guard = true,
-                                      .tell = told_later()};
+                                      .tell = report_at_exit()};
   char *folder = NULL;
   if (request->arm && protocol->instrument_count == 0) {
     return dea_fail(cli->ctx, DEA_E_INSTRUMENT,
@@ -308,16 +308,16 @@ static dea_status export(struct dea_cli *cli, const struct request *request,
 static json_t *report_json(const struct dea_drive_report *report, const char *file)
 {
   json_t *json = json_object();
-  dea_json_put_text(json, "file", file);
-  dea_json_put(json, "played_s", report->played_s);
-  dea_json_put_count(json, "cycles", report->cycles);
-  dea_json_put_count(json, "lost", report->lost);
-  dea_json_put_text(json, "output", dea_zero_name(report->zero.state));
-  dea_json_put(json, "output_V", report->zero.volts);
-  put_why(json, report->zero);
+  dea_json_add_text(json, "file", file);
+  dea_json_add(json, "played_s", report->played_s);
+  dea_json_add_count(json, "cycles", report->cycles);
+  dea_json_add_count(json, "lost", report->lost);
+  dea_json_add_text(json, "output", dea_zero_name(report->zero.state));
+  dea_json_add(json, "output_V", report->zero.volts);
+  add_reason(json, report->zero);
   json_object_set_new(json, "reached_zero", json_boolean(report->zero.state == DEA_ZERO_READ_BACK));
-  dea_json_put(json, "largest_current_A", report->largest_current_A);
-  dea_json_put_text(json, "ended", report->ended);
+  dea_json_add(json, "largest_current_A", report->largest_current_A);
+  dea_json_add_text(json, "ended", report->ended);
   return json;
 }
 
@@ -368,7 +368,7 @@ static json_t *whole_json(struct dea_cli *cli, const struct request *request, de
                           const struct dea_protocol *protocol, const struct dea_protocol_plan *plan)
 {
   json_t *json = json_object();
-  dea_json_put_text(json, "protocol", request->protocol);
+  dea_json_add_text(json, "protocol", request->protocol);
   json_object_set_new(json, "good", json_boolean(status == DEA_OK));
   json_object_set_new(json, "findings", cli_findings_json(cli->ctx));
   if (plan != NULL) {

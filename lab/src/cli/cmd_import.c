@@ -168,7 +168,7 @@ static dea_status write_file(struct dea_cli *cli, const struct request *request,
   return status;
 }
 
-static void say_text(const char *file, const struct dea_recording *recording)
+static void print_text(const char *file, const struct dea_recording *recording)
 {
   for (size_t i = 0; i < recording->channel_count; i++) {
     const struct dea_channel *channel = &recording->channels[i];
@@ -190,7 +190,7 @@ static void say_text(const char *file, const struct dea_recording *recording)
   printf("%-24s %s\n", "file", file);
 }
 
-static void say_json(const char *file, const struct dea_recording *recording)
+static void print_json(const char *file, const struct dea_recording *recording)
 {
   json_t *channels = json_array();
   for (size_t i = 0; i < recording->channel_count; i++) {
@@ -231,9 +231,9 @@ static dea_status record(struct dea_cli *cli, const struct request *request,
     status = name.failed ? DEA_E_MEMORY : write_file(cli, request, dea_text_get(&name), recording);
   }
   if (status == DEA_OK && request->json) {
-    say_json(dea_text_get(&name), recording);
+    print_json(dea_text_get(&name), recording);
   } else if (status == DEA_OK) {
-    say_text(dea_text_get(&name), recording);
+    print_text(dea_text_get(&name), recording);
   }
   dea_text_free(&name);
   dea_recording_destroy(ctx, recording);

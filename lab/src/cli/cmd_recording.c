@@ -175,19 +175,19 @@ static json_t *json_of_channel(const struct dea_channel *channel)
 {
   struct range range = range_of(channel->values, channel->count);
   json_t *json = json_object();
-  dea_json_put_text(json, "name", channel->name);
-  dea_json_put_text(json, "quantity", dea_channel_meanings[channel->kind].name);
-  dea_json_put_text(json, "unit", channel->unit);
-  dea_json_put_count(json, "count", channel->count);
-  dea_json_put_count(json, "missing", range.missing);
+  dea_json_add_text(json, "name", channel->name);
+  dea_json_add_text(json, "quantity", dea_channel_meanings[channel->kind].name);
+  dea_json_add_text(json, "unit", channel->unit);
+  dea_json_add_count(json, "count", channel->count);
+  dea_json_add_count(json, "missing", range.missing);
   if (channel->interval_s > 0) {
-    dea_json_put(json, "start_s", channel->start_s);
-    dea_json_put(json, "interval_s", channel->interval_s);
+    dea_json_add(json, "start_s", channel->start_s);
+    dea_json_add(json, "interval_s", channel->interval_s);
   }
-  dea_json_put(json, "duration_s", duration_of(channel));
-  dea_json_put(json, "filter_Hz", channel->filter_Hz);
-  dea_json_put(json, "lowest", range.lowest);
-  dea_json_put(json, "highest", range.highest);
+  dea_json_add(json, "duration_s", duration_of(channel));
+  dea_json_add(json, "filter_Hz", channel->filter_Hz);
+  dea_json_add(json, "lowest", range.lowest);
+  dea_json_add(json, "highest", range.highest);
   return json;
 }
 
@@ -195,10 +195,10 @@ static void print_json(const struct dea_recording *recording)
 {
   json_t *json = json_object(), *channels = json_array(), *cycles = json_array();
   json_t *events = json_array();
-  dea_json_put_text(json, "title", recording->title);
+  dea_json_add_text(json, "title", recording->title);
   json_object_set_new(json, "complete", json_boolean(recording->complete));
-  dea_json_put_text(json, "ended", recording->ended);
-  dea_json_put_text(json, "output", recording->output);
+  dea_json_add_text(json, "ended", recording->ended);
+  dea_json_add_text(json, "output", recording->output);
   for (size_t c = 0; c < recording->channel_count; c++) {
     json_array_append_new(channels, json_of_channel(&recording->channels[c]));
   }
@@ -208,19 +208,19 @@ static void print_json(const struct dea_recording *recording)
     struct range range = range_of(profiles->z_m, profiles->count * profiles->points);
     json_t *object = json_pack("{s:I, s:I, s:I}", "frames", (json_int_t)profiles->count, "points",
                                (json_int_t)profiles->points, "invalid", (json_int_t)range.missing);
-    dea_json_put(object, "from_m", profiles->x_m[0]);
-    dea_json_put(object, "to_m", profiles->x_m[profiles->points - 1]);
-    dea_json_put(object, "lowest_m", range.lowest);
-    dea_json_put(object, "highest_m", range.highest);
+    dea_json_add(object, "from_m", profiles->x_m[0]);
+    dea_json_add(object, "to_m", profiles->x_m[profiles->points - 1]);
+    dea_json_add(object, "lowest_m", range.lowest);
+    dea_json_add(object, "highest_m", range.highest);
     json_object_set_new(json, "profiles", object);
   }
   for (size_t i = 0; i < recording->cycle_count; i++) {
     const struct dea_recorded_cycle *cycle = &recording->cycles[i];
     json_t *object = json_pack("{s:I, s:I}", "step", (json_int_t)cycle->step, "number",
                                (json_int_t)cycle->number);
-    dea_json_put(object, "start_s", cycle->start_s);
-    dea_json_put(object, "end_s", cycle->end_s);
-    dea_json_put(object, "level_V", cycle->level_V);
+    dea_json_add(object, "start_s", cycle->start_s);
+    dea_json_add(object, "end_s", cycle->end_s);
+    dea_json_add(object, "level_V", cycle->level_V);
     json_array_append_new(cycles, object);
   }
   json_object_set_new(json, "cycles", cycles);
@@ -229,14 +229,14 @@ static void print_json(const struct dea_recording *recording)
     char text[DEA_NOTICED_TEXT_SIZE];
     json_t *object = json_object();
     dea_noticed_text(event, recording->channels[event->channel].name, text);
-    dea_json_put(object, "time_s", event->time_s);
-    dea_json_put_text(object, "text", text);
-    dea_json_put(object, "value", event->value);
-    dea_json_put(object, "limit", event->limit);
+    dea_json_add(object, "time_s", event->time_s);
+    dea_json_add_text(object, "text", text);
+    dea_json_add(object, "value", event->value);
+    dea_json_add(object, "limit", event->limit);
     json_array_append_new(events, object);
   }
   json_object_set_new(json, "events", events);
-  dea_json_put_text(json, "design_name", recording->design_name);
+  dea_json_add_text(json, "design_name", recording->design_name);
   json_t *provenance =
       recording->provenance != NULL ? json_loads(recording->provenance, 0, NULL) : NULL;
   json_object_set_new(json, "provenance", provenance != NULL ? provenance : json_null());
@@ -244,8 +244,8 @@ static void print_json(const struct dea_recording *recording)
 }
 
 /* One at a time: each has its own --after. */
-static int take_with(struct dea_cli *cli, const struct dea_command *command,
-                     const struct cli_option *option, const char *text, void *target)
+static int parse_with(struct dea_cli *cli, const struct dea_command *command,
+                      const struct cli_option *option, const char *text, void *target)
 {
   const char **with = target;
   (void)option;
@@ -311,11 +311,11 @@ static const struct cli_option options[] = {
         "killed, and in a form that programs with older versions of HDF5 read"),
     {"with", 0, CLI_FILE, "OTHER",
      "join the channels and profiles of another recording of the same measurement", CLI_AT(with),
-     take_with},
+     parse_with},
     {"after", 0, CLI_TEXT, "TIME",
      "what FILE's clock shows where OTHER's shows 0, '0.25 s': 0 s where both count from one "
      "trigger",
-     CLI_AT(after_s), cli_take_quantity, .measure = {"s", "0.25 s"}},
+     CLI_AT(after_s), cli_parse_quantity, .measure = {"s", "0.25 s"}},
     {"csv", 0, CLI_FOLDER, "DIR", "write the channels, profiles and cycles as CSV files into DIR",
      CLI_AT(folder)},
     CLI_FORCE_ROW('f', "replace an earlier recording's CSV files in DIR"),

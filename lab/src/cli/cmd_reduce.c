@@ -14,8 +14,8 @@ struct request {
 };
 
 /* "0.2" or "20%". */
-static int take_settle(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target)
+static int parse_settle(struct dea_cli *cli, const struct dea_command *command,
+                        const struct cli_option *option, const char *text, void *target)
 {
   double *settle = target;
   bool good = cli_read_share(text, settle) && *settle > 0.0 && *settle <= 1.0;
@@ -260,7 +260,7 @@ static const struct request defaults = {.options = {NAN, NAN, NAN, 0.0, NAN},
 /* A length or force of the bench, with an example. */
 #define QUANTITY_ROW(name, word, text, member, unit, example, above_0)                             \
   {                                                                                                \
-    name, 0, CLI_TEXT, word, text, CLI_AT(options.member), cli_take_quantity,                      \
+    name, 0, CLI_TEXT, word, text, CLI_AT(options.member), cli_parse_quantity,                     \
         .measure = {unit, example}, .positive = above_0                                            \
   }
 
@@ -280,7 +280,7 @@ static const struct cli_option options[] = {
         "reading of the unloaded force cell, such as '1.5 mN'; else the mean of its first readings",
         force_offset_N, "N", "1.5 mN", false),
     {"settle", 0, CLI_TEXT, "SHARE", "last share of each part of a cycle that is averaged (0.2)",
-     CLI_AT(options.settle), take_settle},
+     CLI_AT(options.settle), parse_settle},
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .reduced)"),
     CLI_FORCE_ROW('f', "replace an earlier reduction in that folder"),
     CLI_FORMAT_ROW("formats of the figures with commas between, svg if not given"),

@@ -62,7 +62,7 @@ static dea_status find_supply(struct dea_context *ctx, const struct dea_protocol
     return DEA_OK;
   }
   return isnan(wait_s) ? dea_supply_open(ctx, folder, address, &armed->supply)
-                       : dea_supply_ask(ctx, folder, address, wait_s, &armed->supply);
+                       : dea_supply_request(ctx, folder, address, wait_s, &armed->supply);
 }
 
 /* How long a program that was asked to end may take, or the guard of one that has died: an attempt
@@ -154,7 +154,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_protocol *protoc
   } else {
     out->zero.state = status == DEA_E_INTERLOCK ? DEA_ZERO_UNKNOWN : DEA_ZERO_NONE;
     // what is set up already must not stay as it is: a supply's output may be on
-    status = dea_drive_give_up(ctx, protocol, opened.instruments, opened.count, status, out);
+    status = dea_drive_abort(ctx, protocol, opened.instruments, opened.count, status, out);
   }
   for (size_t i = opened.count; i-- > 0;) {
     opened.instruments[i]->type->close(ctx, opened.instruments[i]);

@@ -185,7 +185,8 @@ static double record_sample(struct loop *loop, const double *values)
 }
 
 /* Into the recording, and among what is said at the end. */
-static void take_event(struct loop *loop, const struct dea_recorded_event *event, const char *name)
+static void record_event(struct loop *loop, const struct dea_recorded_event *event,
+                         const char *name)
 {
   char text[DEA_NOTICED_TEXT_SIZE];
   bool good = event->kind == DEA_NOTICED_LEARNED;
@@ -198,7 +199,7 @@ static void take_event(struct loop *loop, const struct dea_recorded_event *event
   }
 }
 
-static void take_sample(struct loop *loop, const double *volts)
+static void store_sample(struct loop *loop, const double *volts)
 {
   char why[DEA_WHY_ENDED_SIZE];
   double values[DEA_PROTOCOL_INPUTS_MAX];
@@ -213,7 +214,7 @@ static void take_sample(struct loop *loop, const double *volts)
   for (size_t i = 0; i < loop->watch.event_count && !loop->outcome; i++) {
     struct dea_recorded_event event = loop->watch.events[i];
     const char *name = loop->protocol->inputs[event.channel++].name.text; // 0: the asked voltage
-    take_event(loop, &event, name);
+    record_event(loop, &event, name);
   }
   if (!good) {
     end_early(loop, DEA_E_INTERLOCK, "%s", why);
@@ -243,7 +244,7 @@ static void end_window(struct loop *loop)
 }
 
 /* A sample of 0 V behind the end. */
-static void take_behind_end(struct loop *loop, const double *volts)
+static void read_after_end(struct loop *loop, const double *volts)
 {
   struct drive_monitor *m = &loop->monitor;
   if (m->window == 0 || m->seen++ < m->settle) {
@@ -269,7 +270,7 @@ static void hold_sample(struct loop *loop)
 
 /* The functions of the sink never fail: what goes wrong with the recording is no fault of the
  * instrument. */
-static dea_status take_samples(void *user, const double *volts, size_t count)
+static dea_status record_samples(void *user, const double *volts, size_t count)
 {
   struct source *source = user;
   struct loop *loop = source->loop;
@@ -279,7 +280,7 @@ static dea_status take_samples(void *user, const double *volts, size_t count)
       hold_sample(loop);
     }
     if (loop->got == loop->put && loop->output.over) {
-      take_behind_end(loop, sample);
+      read_after_end(loop, sample);
       continue;
     }
     if (loop->got == loop->put) {
@@ -289,7 +290,7 @@ static dea_status take_samples(void *user, const double *volts, size_t count)
                 source->instrument->type->name);
       break;
     }
-    take_sample(loop, sample);
+    store_sample(loop, sample);
   }
   source->heard_s = count > 0 ? dea_clock_s() : source->heard_s;
   return DEA_OK;
@@ -301,7 +302,7 @@ static bool is_behind_end(const struct loop *loop, double time_s)
   return loop->monitor.seen > 0 && time_s * loop->protocol->rate_Hz.si > (double)loop->put;
 }
 
-static dea_status take_profile(void *user, double time_s, const double *z_m)
+static dea_status record_profile(void *user, double time_s, const double *z_m)
 {
   struct source *source = user;
   struct loop *loop = source->loop;
@@ -321,7 +322,7 @@ static dea_status take_profile(void *user, double time_s, const double *z_m)
   return DEA_OK;
 }
 
-static dea_status take_reading(void *user, size_t reading, double time_s, double value)
+static dea_status record_reading(void *user, size_t reading, double time_s, double value)
 {
   struct source *source = user;
   struct loop *loop = source->loop;
@@ -345,7 +346,7 @@ static dea_status take_reading(void *user, size_t reading, double time_s, double
 
 static void get_from(struct loop *loop, struct source *source, double timeout_s)
 {
-  const struct dea_sink sink = {source, take_samples, take_profile, take_reading};
+  const struct dea_sink sink = {source, record_samples, record_profile, record_reading};
   const struct dea_instrument_type *type = source->instrument->type;
   if (!source->failed && type->get != NULL &&
       type->get(loop->ctx, source->instrument, timeout_s, &sink) != DEA_OK) {
@@ -378,10 +379,10 @@ static void check_values(struct loop *loop, struct source *source)
     }
     if (!source->silent[i]) {
       source->silent[i] = true;
-      take_event(loop,
-                 &(struct dea_recorded_event){now_s - loop->started_s, DEA_NOTICED_SILENT,
-                                              source->first_channel + i, silent_s, silent_most_s},
-                 reading->name);
+      record_event(loop,
+                   &(struct dea_recorded_event){now_s - loop->started_s, DEA_NOTICED_SILENT,
+                                                source->first_channel + i, silent_s, silent_most_s},
+                   reading->name);
     }
     if (silent_s >= silent_most_s) {
       end_early(loop, DEA_E_INTERLOCK, "reading '%.60s' has given no value for %.3g s",
@@ -465,7 +466,7 @@ static void get_all(struct loop *loop, double timeout_s)
 // What is played ---------------------------------------------------------------------------------
 
 /* False: the player has failed, or has dropped it after a stall. */
-static bool put_all(struct loop *loop, const double *volts, size_t count)
+static bool set_outputs(struct loop *loop, const double *volts, size_t count)
 {
   struct source *player = loop->player;
   if (player->instrument->type->put(loop->ctx, player->instrument, volts, count) != DEA_OK) {
@@ -476,13 +477,13 @@ static bool put_all(struct loop *loop, const double *volts, size_t count)
 }
 
 /* 0 V for as long as the voltage channels need to show it. */
-static void put_behind_end(struct loop *loop)
+static void write_after_end(struct loop *loop)
 {
   struct drive_monitor *m = &loop->monitor;
   memset(loop->volts, 0, loop->block * sizeof *loop->volts);
   for (size_t left = m->window > 0 ? m->settle + m->window : 0; left > 0;) {
     size_t part = left < loop->block ? left : loop->block;
-    if (!put_all(loop, loop->volts, part)) {
+    if (!set_outputs(loop, loop->volts, part)) {
       return;
     }
     left -= part;
@@ -501,7 +502,7 @@ static void begin_clock(struct loop *loop)
   }
 }
 
-static void put_block(struct loop *loop)
+static void write_block(struct loop *loop)
 {
   double asked_V[64];
   size_t filled = 0;
@@ -513,13 +514,13 @@ static void put_block(struct loop *loop)
       loop->volts[filled++] = asked_V[i] / loop->protocol->amplifier.gain.si;
     }
   }
-  if (filled == 0 || put_all(loop, loop->volts, filled)) {
+  if (filled == 0 || set_outputs(loop, loop->volts, filled)) {
     if (loop->put == 0) {
       begin_clock(loop);
     }
     loop->put += filled;
     if (loop->output.over) {
-      put_behind_end(loop);
+      write_after_end(loop);
     }
   }
 }
@@ -585,7 +586,7 @@ static void play(struct loop *loop, const volatile sig_atomic_t *interrupt)
     }
     bool more = has_room(loop);
     if (more) {
-      put_block(loop);
+      write_block(loop);
     }
     get_all(loop, more ? 0 : wait_s);
     mark_cycles(loop);
@@ -629,8 +630,8 @@ static void start_all(struct loop *loop)
 }
 
 /* What an instrument says after its stop; nothing of one without output. */
-static void take_zero(const struct dea_protocol *protocol, struct dea_zero known,
-                      struct dea_drive_report *report)
+static void set_zero(const struct dea_protocol *protocol, struct dea_zero known,
+                     struct dea_drive_report *report)
 {
   if (known.state != DEA_ZERO_NONE) {
     report->zero = known;
@@ -638,14 +639,14 @@ static void take_zero(const struct dea_protocol *protocol, struct dea_zero known
   }
 }
 
-dea_status dea_drive_give_up(struct dea_context *ctx, const struct dea_protocol *protocol,
-                             struct dea_instrument *const *instruments, size_t count,
-                             dea_status status, struct dea_drive_report *out)
+dea_status dea_drive_abort(struct dea_context *ctx, const struct dea_protocol *protocol,
+                           struct dea_instrument *const *instruments, size_t count,
+                           dea_status status, struct dea_drive_report *out)
 {
   char why[512];
   bool said = out->zero.state == DEA_ZERO_UNKNOWN;
   for (size_t i = 0; i < count; i++) {
-    take_zero(protocol, dea_instrument_stop(ctx, instruments[i]), out);
+    set_zero(protocol, dea_instrument_stop(ctx, instruments[i]), out);
   }
   if (said || out->zero.state != DEA_ZERO_UNKNOWN) {
     return status;
@@ -681,7 +682,7 @@ static void stop_all(struct loop *loop)
     if (&loop->sources[i] != loop->player) {
       continue;
     }
-    take_zero(loop->protocol, known, loop->report);
+    set_zero(loop->protocol, known, loop->report);
     if (apart) { // it measures on, also what could not be played to its end
       loop->output.over = true;
       m->seen = 0;
@@ -852,7 +853,7 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
     dea_context_set_interrupt(ctx, interrupt);
     status = finish(&loop);
   } else {
-    status = dea_drive_give_up(ctx, protocol, bench->instruments, bench->count, status, out);
+    status = dea_drive_abort(ctx, protocol, bench->instruments, bench->count, status, out);
   }
   dea_free(ctx, loop.asked);
   dea_free(ctx, loop.volts);

@@ -24,9 +24,9 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
 
 /* Stops instruments that will not play, for the reason that `status` and the context have. The
  * status, which is another one where the output is not known to be at 0 V then, and was before. */
-dea_status dea_drive_give_up(struct dea_context *ctx, const struct dea_protocol *protocol,
-                             struct dea_instrument *const *instruments, size_t count,
-                             dea_status status, struct dea_drive_report *out);
+dea_status dea_drive_abort(struct dea_context *ctx, const struct dea_protocol *protocol,
+                           struct dea_instrument *const *instruments, size_t count,
+                           dea_status status, struct dea_drive_report *out);
 
 /* Who does what; lent. */
 struct dea_drive_roles {

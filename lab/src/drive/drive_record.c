@@ -13,7 +13,8 @@ static dea_status wrong_bench(struct dea_context *ctx, const char *what)
 }
 
 /* Takes a role; false when another one has it. */
-static bool take_role(struct dea_instrument *instrument, unsigned role, struct dea_instrument **who)
+static bool assign_role(struct dea_instrument *instrument, unsigned role,
+                        struct dea_instrument **who)
 {
   if ((instrument->roles & role) == 0) {
     return true;
@@ -32,13 +33,13 @@ dea_status dea_drive_find_roles(struct dea_context *ctx, const struct dea_protoc
   }
   for (size_t i = 0; i < bench->count; i++) {
     struct dea_instrument *instrument = bench->instruments[i];
-    if (!take_role(instrument, DEA_PLAYS_OUTPUT, &out->player)) {
+    if (!assign_role(instrument, DEA_PLAYS_OUTPUT, &out->player)) {
       return wrong_bench(ctx, "two of them play the output");
     }
-    if (!take_role(instrument, DEA_READS_INPUTS, &out->reader)) {
+    if (!assign_role(instrument, DEA_READS_INPUTS, &out->reader)) {
       return wrong_bench(ctx, "two of them read the inputs");
     }
-    if (!take_role(instrument, DEA_SENDS_PROFILES, &out->sensor)) {
+    if (!assign_role(instrument, DEA_SENDS_PROFILES, &out->sensor)) {
       return wrong_bench(ctx, "two of them send profiles; a recording has one profile sensor");
     }
   }
@@ -66,15 +67,15 @@ static dea_status provenance_text(struct dea_context *ctx, const struct dea_prot
     dea_text_add(&names, "%s%s", i > 0 ? ", " : "", bench->instruments[i]->type->name);
   }
   json_t *json = json_object();
-  dea_json_put_text(json, "program", p.program);
-  dea_json_put_text(json, "started", p.started);
-  dea_json_put_text(json, "libraries", p.libraries);
-  dea_json_put_text(json, "protocol_file", protocol->file);
-  dea_json_put_text(json, "protocol_sha256", p.input_sha256);
+  dea_json_add_text(json, "program", p.program);
+  dea_json_add_text(json, "started", p.started);
+  dea_json_add_text(json, "libraries", p.libraries);
+  dea_json_add_text(json, "protocol_file", protocol->file);
+  dea_json_add_text(json, "protocol_sha256", p.input_sha256);
   if (protocol->overrides != NULL) {
-    dea_json_put_text(json, "protocol_overrides", protocol->overrides);
+    dea_json_add_text(json, "protocol_overrides", protocol->overrides);
   }
-  dea_json_put_text(json, "instruments", dea_text_get(&names));
+  dea_json_add_text(json, "instruments", dea_text_get(&names));
   dea_status status = dea_json_text(ctx, json, out);
   dea_text_free(&names);
   dea_free(ctx, p.input);

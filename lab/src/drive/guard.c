@@ -46,7 +46,7 @@ struct dea_guard {
 // The guard's side -------------------------------------------------------------------------------
 
 /* Nothing of the program's is kept open: what waits for its end must not wait for the guard. */
-static void let_go(int pipe, int tell, const struct dea_supply *supply)
+static void release_guard(int pipe, int tell, const struct dea_supply *supply)
 {
   long most = sysconf(_SC_OPEN_MAX);
   for (int file = 0; file < (most > 0 && most < 65536 ? (int)most : 65536); file++) {
@@ -127,7 +127,7 @@ static void bring_to_zero(struct dea_context *ctx, const struct dea_protocol *pr
       memcpy(said, known, sizeof said);
     }
     if (more && dea_supply_is_asked(supply)) {
-      more = dea_supply_give(supply, until_s - dea_clock_s()) &&
+      more = dea_supply_release(supply, until_s - dea_clock_s()) &&
              strncmp(supply->left, text, strcspn(text, "(")) == 0;
     }
     dea_clock_wait(more ? again_s : 0);
@@ -141,7 +141,7 @@ static void guard(const struct dea_protocol *protocol,
   struct dea_instrument_past past = {supply.mark, getppid(), protocol->safety.zero_time_s.si,
                                      supply.host, NULL};
   struct dea_context *ctx;
-  let_go(pipe, tell, &supply);
+  release_guard(pipe, tell, &supply);
   char end = wait_for_end(pipe, signs);
   if (end == clean_end) {
     return;

@@ -111,7 +111,7 @@ static void learn(struct dea_leak_part *part)
 }
 
 /* What is said of all parts. */
-static enum dea_leak_event tell(struct dea_leak_watch *watch, enum dea_leak_event event)
+static enum dea_leak_event report(struct dea_leak_watch *watch, enum dea_leak_event event)
 {
   watch->value_A = watch->limit_A = 0;
   for (size_t i = 0; i < watch->part_count; i++) {
@@ -139,11 +139,11 @@ static enum dea_leak_event end_visit(struct dea_leak_watch *watch, struct dea_le
     bool useless = limit_of(watch, part) >= watch->protocol->safety.trip_current_A.si;
     if (useless && !watch->scattered) {
       watch->scattered = true;
-      return tell(watch, DEA_LEAK_SCATTER);
+      return report(watch, DEA_LEAK_SCATTER);
     }
     bool all = ++watch->learned == watch->active && !watch->told;
     watch->told = watch->told || all;
-    return all ? tell(watch, DEA_LEAK_LEARNED) : DEA_LEAK_NOTHING;
+    return all ? report(watch, DEA_LEAK_LEARNED) : DEA_LEAK_NOTHING;
   }
   if (part->above_s > 0) { // a fault is not followed
     return DEA_LEAK_NOTHING;
@@ -157,11 +157,11 @@ static enum dea_leak_event end_visit(struct dea_leak_watch *watch, struct dea_le
   part->base_A = most_A;
   bool first = !watch->drifted;
   watch->drifted = true;
-  return first ? tell(watch, DEA_LEAK_DRIFTED) : DEA_LEAK_NOTHING;
+  return first ? report(watch, DEA_LEAK_DRIFTED) : DEA_LEAK_NOTHING;
 }
 
-static enum dea_leak_event take_value(struct dea_leak_watch *watch, struct dea_leak_part *part,
-                                      double value_A, double spent_s)
+static enum dea_leak_event add_value(struct dea_leak_watch *watch, struct dea_leak_part *part,
+                                     double value_A, double spent_s)
 {
   watch->active += part->visit_count == 0 && part->visit_values == 0;
   part->visit_sum_A += value_A;
@@ -241,6 +241,6 @@ enum dea_leak_event dea_leak_watch_sample(struct dea_leak_watch *watch, double t
   if (!add_sample(part, flow_A, since_s, &value_A, &spent_s)) {
     return event;
   }
-  enum dea_leak_event of_value = take_value(watch, part, value_A, spent_s);
+  enum dea_leak_event of_value = add_value(watch, part, value_A, spent_s);
   return of_value != DEA_LEAK_NOTHING ? of_value : event;
 }

@@ -50,7 +50,7 @@ static dea_status open_files(struct dea_context *ctx, const char *folder, const 
   for (char *c = out->path + strlen(folder) + 1; *c != '\0'; c++) {
     *c = isalnum((unsigned char)*c) || *c == '.' ? *c : '-';
   }
-  DEA_TRY(ctx, dea_folder_make(ctx, folder));
+  DEA_TRY(ctx, dea_folder_create(ctx, folder));
   snprintf(ask, sizeof ask, "%s.asked", out->path);
   bool is_new = !dea_path_exists(out->path);
   out->file = open(out->path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
@@ -119,8 +119,8 @@ dea_status dea_supply_open(struct dea_context *ctx, const char *folder, const ch
   return DEA_OK;
 }
 
-dea_status dea_supply_ask(struct dea_context *ctx, const char *folder, const char *address,
-                          double wait_s, struct dea_supply *out)
+dea_status dea_supply_request(struct dea_context *ctx, const char *folder, const char *address,
+                              double wait_s, struct dea_supply *out)
 {
   double until_s = dea_clock_s() + wait_s;
   *out = (struct dea_supply){.file = -1, .ask = -1};
@@ -150,7 +150,7 @@ bool dea_supply_is_asked(const struct dea_supply *supply)
   return false;
 }
 
-bool dea_supply_give(struct dea_supply *supply, double within_s)
+bool dea_supply_release(struct dea_supply *supply, double within_s)
 {
   double until_s = dea_clock_s() + within_s;
   flock(supply->file, LOCK_UN);

@@ -32,13 +32,13 @@ dea_status dea_supply_open(struct dea_context *ctx, const char *folder, const ch
                            struct dea_supply *out);
 /* The same for who brings it to 0 V: asks for it, and waits up to wait_s. DEA_E_INTERLOCK: it was
  * not given; `left` and `mark` are there, and it is asked for until it is closed. */
-dea_status dea_supply_ask(struct dea_context *ctx, const char *folder, const char *address,
-                          double wait_s, struct dea_supply *out);
+dea_status dea_supply_request(struct dea_context *ctx, const char *folder, const char *address,
+                              double wait_s, struct dea_supply *out);
 /* Whether somebody asks for it. */
 bool dea_supply_is_asked(const struct dea_supply *supply);
 /* Gives it to who asks for it, and takes it again as soon as nobody does, with what was left then.
  * False: it was not given back within the time. */
-bool dea_supply_give(struct dea_supply *supply, double within_s);
+bool dea_supply_release(struct dea_supply *supply, double within_s);
 /* Puts down what is left behind should nothing follow, and the mark, on the disk before it returns;
  * "": nothing. */
 dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, const char *text);

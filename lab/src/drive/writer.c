@@ -80,7 +80,7 @@ static dea_status write_held(struct dea_writer *w)
 }
 
 /* The first failure is kept; called with the lock held. */
-static void take_status(struct dea_writer *w, dea_status status)
+static void set_status(struct dea_writer *w, dea_status status)
 {
   if (status != DEA_OK && w->status == DEA_OK) {
     w->status = status;
@@ -104,7 +104,7 @@ static void *write_all(void *user)
       pthread_mutex_unlock(&w->lock);
       dea_status last = write_held(w);
       pthread_mutex_lock(&w->lock);
-      take_status(w, last);
+      set_status(w, last);
       continue;
     }
     struct item item = w->items[w->first];
@@ -117,7 +117,7 @@ static void *write_all(void *user)
       status = write_held(w);
     }
     pthread_mutex_lock(&w->lock);
-    take_status(w, status);
+    set_status(w, status);
     w->first = (w->first + 1) % ITEMS;
     w->waiting--;
     w->tail = w->waiting > 0 ? w->items[w->first].at : 0;
@@ -149,8 +149,8 @@ static bool find_room(const struct dea_writer *w, size_t count, size_t *at)
 }
 
 /* The next item's numbers, and the lock; NULL after a failure, without it. */
-static double *take_room(struct dea_context *ctx, struct dea_writer *w, enum kind kind,
-                         size_t channel, size_t count)
+static double *reserve(struct dea_context *ctx, struct dea_writer *w, enum kind kind,
+                       size_t channel, size_t count)
 {
   size_t at = 0;
   pthread_mutex_lock(&w->lock);
@@ -181,7 +181,7 @@ static void hand_over(struct dea_writer *w)
 dea_status dea_writer_add(struct dea_context *ctx, struct dea_writer *writer, size_t channel,
                           const double *values, size_t count)
 {
-  double *to = take_room(ctx, writer, SAMPLES, channel, count);
+  double *to = reserve(ctx, writer, SAMPLES, channel, count);
   if (to == NULL) {
     return dea_context_status(ctx);
   }
@@ -193,7 +193,7 @@ dea_status dea_writer_add(struct dea_context *ctx, struct dea_writer *writer, si
 dea_status dea_writer_add_timed(struct dea_context *ctx, struct dea_writer *writer, size_t channel,
                                 double time_s, double value)
 {
-  double *to = take_room(ctx, writer, READING, channel, 2);
+  double *to = reserve(ctx, writer, READING, channel, 2);
   if (to == NULL) {
     return dea_context_status(ctx);
   }
@@ -206,7 +206,7 @@ dea_status dea_writer_add_timed(struct dea_context *ctx, struct dea_writer *writ
 dea_status dea_writer_add_profile(struct dea_context *ctx, struct dea_writer *writer, double time_s,
                                   const double *z_m, size_t points)
 {
-  double *to = take_room(ctx, writer, FRAME, 0, points + 1);
+  double *to = reserve(ctx, writer, FRAME, 0, points + 1);
   if (to == NULL) {
     return dea_context_status(ctx);
   }
@@ -219,7 +219,7 @@ dea_status dea_writer_add_profile(struct dea_context *ctx, struct dea_writer *wr
 dea_status dea_writer_add_cycle(struct dea_context *ctx, struct dea_writer *writer,
                                 const struct dea_recorded_cycle *cycle)
 {
-  double *to = take_room(ctx, writer, CYCLE, 0, 5);
+  double *to = reserve(ctx, writer, CYCLE, 0, 5);
   if (to == NULL) {
     return dea_context_status(ctx);
   }
@@ -235,7 +235,7 @@ dea_status dea_writer_add_cycle(struct dea_context *ctx, struct dea_writer *writ
 dea_status dea_writer_add_event(struct dea_context *ctx, struct dea_writer *writer,
                                 const struct dea_recorded_event *event)
 {
-  double *to = take_room(ctx, writer, EVENT, event->channel, 4);
+  double *to = reserve(ctx, writer, EVENT, event->channel, 4);
   if (to == NULL) {
     return dea_context_status(ctx);
   }

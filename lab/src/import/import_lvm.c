@@ -91,7 +91,7 @@ static bool find_field(const struct dea_lvm *lvm, size_t n, size_t *i)
 }
 
 /* Fields of a line that a key begins: "Samples\t10\t10". false for another line. */
-static bool take_key(const struct dea_lvm *lvm, struct dea_slice line, const char *key,
+static bool read_key(const struct dea_lvm *lvm, struct dea_slice line, const char *key,
                      struct dea_slice *values)
 {
   struct dea_slice rest = line, field;
@@ -109,7 +109,7 @@ static double number_of(const struct dea_lvm *lvm, struct dea_slice field)
 }
 
 /* What a line of a segment's header says of one channel. */
-static void take_channel(const struct dea_lvm *lvm, struct dea_slice key, struct dea_slice field,
+static void read_channel(const struct dea_lvm *lvm, struct dea_slice key, struct dea_slice field,
                          struct dea_lvm_channel *channel)
 {
   double number = number_of(lvm, field);
@@ -131,7 +131,7 @@ static void take_channel(const struct dea_lvm *lvm, struct dea_slice key, struct
 /* Values of one line of a segment's header: a field a channel. With X_Columns Multi each column has
  * one, those of the times an empty one; where the second one of the samples is not empty, the file
  * is of a program that writes one a channel there too. */
-static void take_channels(struct dea_lvm *lvm, struct dea_slice line)
+static void read_channels(struct dea_lvm *lvm, struct dea_slice line)
 {
   struct dea_slice key, field;
   if (!dea_slice_field(&line, lvm->separator, &key)) {
@@ -145,7 +145,7 @@ static void take_channels(struct dea_lvm *lvm, struct dea_slice line)
       lvm->stride = 1;
     }
     if (n % lvm->stride == 0 && n / lvm->stride < lvm->count) {
-      take_channel(lvm, key, field, &lvm->channels[n / lvm->stride]);
+      read_channel(lvm, key, field, &lvm->channels[n / lvm->stride]);
     }
   }
 }
@@ -191,11 +191,11 @@ static dea_status read_segment_header(struct dea_lvm *lvm, struct dea_slice line
     if (skip_special(line, &special)) {
       continue;
     }
-    if (take_key(lvm, line, "Channels", &values)) {
+    if (read_key(lvm, line, "Channels", &values)) {
       known = true;
       DEA_TRY(lvm->ctx, begin_channels(lvm, values));
     } else if (known) {
-      take_channels(lvm, line);
+      read_channels(lvm, line);
     }
   } while (dea_lines_next(&lvm->lines, &line));
   return dea_fail(lvm->ctx, DEA_E_IO, "'%s', line %zu: the header of a segment %s", lvm->file,
@@ -306,7 +306,7 @@ static dea_status read_rows(struct dea_lvm *lvm, struct dea_slice *line, bool *m
     if (skip_special(*line, &special) || dea_slice_trim(*line).length == 0) {
       continue;
     }
-    if (take_key(lvm, *line, "Channels", &values)) {
+    if (read_key(lvm, *line, "Channels", &values)) {
       return DEA_OK;
     }
     DEA_TRY(lvm->ctx, read_row(lvm, *line));

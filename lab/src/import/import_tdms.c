@@ -121,7 +121,7 @@ static void read_chunk(struct dea_tdms *tdms, struct dea_table *table, const uns
 }
 
 /* Says that what was not closed, or does not end with a whole chunk, is read as far as it goes. */
-static dea_status say_cut(struct dea_tdms *tdms, size_t byte, const char *why)
+static dea_status report_cut(struct dea_tdms *tdms, size_t byte, const char *why)
 {
   const struct dea_location location = {.file = tdms->file};
   return dea_finding_add(tdms->ctx, DEA_WARNING, location,
@@ -165,7 +165,8 @@ static dea_status read_raw(struct dea_tdms *tdms, struct dea_table *table, size_
     uint64_t now = chunk < left ? chunk : left;
     bool even = now == chunk || (!segment->open && is_even(tdms, now, chunk));
     if (!even && !segment->open && table == NULL) {
-      DEA_TRY(tdms->ctx, say_cut(tdms, position, "the values end within a row of channels: the"));
+      DEA_TRY(tdms->ctx,
+              report_cut(tdms, position, "the values end within a row of channels: the"));
     }
     read_chunk(tdms, table, at, now, chunk, even, big);
     at += now;
@@ -198,7 +199,8 @@ static dea_status read_segments(struct dea_tdms *tdms, const unsigned char *star
     }
     DEA_TRY(tdms->ctx, read_raw(tdms, table, (size_t)(at - start), &segment));
     if (segment.open && table == NULL) {
-      DEA_TRY(tdms->ctx, say_cut(tdms, (size_t)(at - start), "the file was not closed: its last"));
+      DEA_TRY(tdms->ctx,
+              report_cut(tdms, (size_t)(at - start), "the file was not closed: its last"));
     }
     at = segment.end;
   }

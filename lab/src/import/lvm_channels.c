@@ -86,7 +86,7 @@ static double row_time(const struct dea_lvm *lvm, struct dea_lvm_channel *channe
   return channel->x_now + channel->shift_s;
 }
 
-static void put(struct dea_lvm *lvm, size_t column, double value, size_t capacity)
+static void add(struct dea_lvm *lvm, size_t column, double value, size_t capacity)
 {
   if (column != SIZE_MAX && lvm->table->columns[column].count < capacity) {
     lvm->table->columns[column].values[lvm->table->columns[column].count++] = value;
@@ -100,7 +100,7 @@ static void keep_shared_time(struct dea_lvm *lvm, size_t row)
   double time = row_time(lvm, first, row);
   first->last_s = fmax(first->last_s, time);
   if (lvm->filling) {
-    put(lvm, lvm->x_column, time, lvm->rows);
+    add(lvm, lvm->x_column, time, lvm->rows);
   } else {
     lvm->rows++;
   }
@@ -126,12 +126,12 @@ void dea_lvm_keep_row(struct dea_lvm *lvm, size_t row)
       channel->total += present ? channel->missing + 1 : 0;
       channel->missing = present ? 0 : channel->missing + 1;
     } else {
-      put(lvm, channel->column, present ? channel->y_now : NAN, channel->total);
+      add(lvm, channel->column, present ? channel->y_now : NAN, channel->total);
     }
     if (own) {
       double time = row_time(lvm, channel, row);
       channel->last_s = fmax(channel->last_s, time);
-      put(lvm, lvm->filling ? channel->x_column : SIZE_MAX, time, channel->total);
+      add(lvm, lvm->filling ? channel->x_column : SIZE_MAX, time, channel->total);
     }
   }
 }

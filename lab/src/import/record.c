@@ -127,8 +127,8 @@ static dea_status copy_values(struct work *work, size_t column, size_t step, dou
   const struct dea_table_column *c = &work->table->columns[column];
   const struct dea_column_role *role = &work->roles[column];
   if (role->clock > 0) {
-    return dea_clock_take(work->ctx, work->table, column, role->clock - 1, role->factor,
-                          role->offset, step, out);
+    return dea_clock_parse(work->ctx, work->table, column, role->clock - 1, role->factor,
+                           role->offset, step, out);
   }
   for (size_t i = 0; i < c->count; i++) {
     out[step * i] = c->values[i] * role->factor + role->offset;
@@ -323,7 +323,7 @@ static bool is_ignored(const struct work *work, const char *name)
   return false;
 }
 
-static dea_status tell_left(struct work *work)
+static dea_status report_left(struct work *work)
 {
   struct dea_text names = {.ctx = work->ctx};
   size_t left = 0;
@@ -359,7 +359,7 @@ static dea_status fill(struct work *work)
   }
   DEA_TRY(work->ctx, add_profiles(work));
   DEA_TRY(work->ctx, warn(work));
-  DEA_TRY(work->ctx, tell_left(work));
+  DEA_TRY(work->ctx, report_left(work));
   if (work->recording->channel_count == 0 && work->recording->profiles.count == 0) {
     return dea_fail(work->ctx, DEA_E_IO,
                     "no column of '%s' could be taken for anything: say what they are in a mapping "

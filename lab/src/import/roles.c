@@ -78,7 +78,7 @@ static dea_status find_column(struct work *work, const struct dea_label *wanted,
 }
 
 /* Gives a column a use; an error when it has another one. */
-static dea_status take_column(struct work *work, size_t column, enum dea_column_use use,
+static dea_status read_column(struct work *work, size_t column, enum dea_column_use use,
                               struct dea_location location)
 {
   struct dea_column_role *role = &work->roles[column];
@@ -106,7 +106,7 @@ static dea_status scale(struct work *work, size_t column, const char *si,
 }
 
 /* The column of times that a key names. */
-static dea_status take_time(struct work *work, const struct dea_label *name, size_t *clock)
+static dea_status read_time(struct work *work, const struct dea_label *name, size_t *clock)
 {
   const struct dea_scale_text text = {.unit = &work->mapping->time_unit};
   size_t column;
@@ -115,11 +115,11 @@ static dea_status take_time(struct work *work, const struct dea_label *name, siz
     return DEA_OK;
   }
   *clock = column + 1;
-  DEA_TRY(work->ctx, take_column(work, column, DEA_USE_TIME, name->location));
+  DEA_TRY(work->ctx, read_column(work, column, DEA_USE_TIME, name->location));
   return scale(work, column, "s", &text, name->location);
 }
 
-static dea_status take_channel(struct work *work, const struct dea_mapped *mapped)
+static dea_status read_channel(struct work *work, const struct dea_mapped *mapped)
 {
   const struct dea_scale_text text = {&mapped->unit, &mapped->per_unit, &mapped->at_zero};
   size_t column;
@@ -127,15 +127,15 @@ static dea_status take_channel(struct work *work, const struct dea_mapped *mappe
   if (column == work->table->column_count) {
     return DEA_OK;
   }
-  DEA_TRY(work->ctx, take_column(work, column, DEA_USE_CHANNEL, mapped->column.location));
+  DEA_TRY(work->ctx, read_column(work, column, DEA_USE_CHANNEL, mapped->column.location));
   struct dea_column_role *role = &work->roles[column];
   role->kind = (enum dea_channel_kind)mapped->as.value;
   DEA_TRY(work->ctx, scale(work, column, dea_channel_meanings[role->kind].si_unit, &text,
                            mapped->column.location));
-  return mapped->time.text[0] != '\0' ? take_time(work, &mapped->time, &role->clock) : DEA_OK;
+  return mapped->time.text[0] != '\0' ? read_time(work, &mapped->time, &role->clock) : DEA_OK;
 }
 
-static dea_status take_profile(struct work *work)
+static dea_status read_profile(struct work *work)
 {
   const struct dea_mapping *mapping = work->mapping;
   const struct dea_scale_text text = {&mapping->profile.unit, &mapping->profile.per_unit,
@@ -143,14 +143,14 @@ static dea_status take_profile(struct work *work)
   const struct dea_label *pattern = &mapping->profile.columns;
   size_t found = 0, clock = 0, errors = work->errors;
   if (mapping->profile.time.text[0] != '\0') {
-    DEA_TRY(work->ctx, take_time(work, &mapping->profile.time, &clock));
+    DEA_TRY(work->ctx, read_time(work, &mapping->profile.time, &clock));
   }
   if (mapping->profile.x.text[0] != '\0') {
     const struct dea_scale_text x_text = {.unit = &mapping->profile.x_unit};
     size_t column;
     DEA_TRY(work->ctx, find_column(work, &mapping->profile.x, &column));
     if (column < work->table->column_count) {
-      DEA_TRY(work->ctx, take_column(work, column, DEA_USE_POSITION, mapping->profile.x.location));
+      DEA_TRY(work->ctx, read_column(work, column, DEA_USE_POSITION, mapping->profile.x.location));
       DEA_TRY(work->ctx, scale(work, column, "m", &x_text, mapping->profile.x.location));
     }
   }
@@ -158,7 +158,7 @@ static dea_status take_profile(struct work *work)
     // a column that another key names is none of its points
     if (work->roles[i].use == DEA_USE_LEFT &&
         dea_mapping_matches(work->table->columns[i].name, pattern->text, true)) {
-      DEA_TRY(work->ctx, take_column(work, i, DEA_USE_PROFILE, pattern->location));
+      DEA_TRY(work->ctx, read_column(work, i, DEA_USE_PROFILE, pattern->location));
       DEA_TRY(work->ctx, scale(work, i, "m", &text, pattern->location));
       work->roles[i].clock = clock;
       found++;
@@ -173,16 +173,16 @@ static dea_status take_profile(struct work *work)
   return DEA_OK;
 }
 
-static dea_status take_mapping(struct work *work, size_t *clock)
+static dea_status read_mapping(struct work *work, size_t *clock)
 {
   const struct dea_mapping *mapping = work->mapping;
   if (mapping->time.text[0] != '\0') {
-    DEA_TRY(work->ctx, take_time(work, &mapping->time, clock));
+    DEA_TRY(work->ctx, read_time(work, &mapping->time, clock));
   }
   for (size_t i = 0; i < mapping->column_count; i++) {
-    DEA_TRY(work->ctx, take_channel(work, &mapping->columns[i]));
+    DEA_TRY(work->ctx, read_channel(work, &mapping->columns[i]));
   }
-  return DEA_CHAIN(work->ctx, mapping->has_profile ? take_profile(work) : DEA_OK);
+  return DEA_CHAIN(work->ctx, mapping->has_profile ? read_profile(work) : DEA_OK);
 }
 
 // Guessing ---------------------------------------------------------------------------------------
@@ -200,7 +200,7 @@ static bool is_constant(const struct dea_table_column *column)
 
 /* A guessed column of times, in the mapping's unit of times where it has one; with a rate it is
  * said that these times are not used. */
-static dea_status take_guessed_time(struct work *work, size_t i)
+static dea_status read_guessed_time(struct work *work, size_t i)
 {
   const struct dea_mapping *mapping = work->mapping;
   if (mapping != NULL && !isnan(mapping->rate_Hz.si)) {
@@ -254,7 +254,7 @@ static dea_status guess_times(struct work *work)
       role->use = DEA_USE_TIME;
       role->factor = seconds ? factor : 1;
       role->why = seconds ? "by its unit" : "by its name, in s";
-      DEA_TRY(work->ctx, take_guessed_time(work, i));
+      DEA_TRY(work->ctx, read_guessed_time(work, i));
     }
   }
   return DEA_OK;
@@ -400,7 +400,7 @@ dea_status dea_table_roles(struct dea_context *ctx, const struct dea_table *tabl
   for (size_t i = 0; i < table->column_count; i++) {
     roles[i] = (struct dea_column_role){.factor = 1, .interval_s = NAN, .why = "not known"};
   }
-  DEA_TRY(ctx, mapping != NULL ? take_mapping(&work, &clock) : DEA_OK);
+  DEA_TRY(ctx, mapping != NULL ? read_mapping(&work, &clock) : DEA_OK);
   DEA_TRY(ctx, mapping == NULL || mapping->time.text[0] == '\0' ? guess_times(&work) : DEA_OK);
   for (size_t i = 0; mapping == NULL && i < table->column_count; i++) {
     guess_channel(&work, i);

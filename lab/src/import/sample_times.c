@@ -107,8 +107,8 @@ dea_status dea_clock_read(struct dea_context *ctx, const struct dea_table *table
   return DEA_OK;
 }
 
-dea_status dea_clock_take(struct dea_context *ctx, const struct dea_table *table, size_t column,
-                          size_t times, double factor, double offset, size_t step, double *out)
+dea_status dea_clock_parse(struct dea_context *ctx, const struct dea_table *table, size_t column,
+                           size_t times, double factor, double offset, size_t step, double *out)
 {
   const struct dea_table_column *c = &table->columns[column], *t = &table->columns[times];
   size_t n = 0;

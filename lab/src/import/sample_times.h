@@ -16,8 +16,8 @@ dea_status dea_clock_read(struct dea_context *ctx, const struct dea_table *table
 /* The values of the rows that have a time as value * factor + offset, out[0], out[step], ... A
  * value without a time is a finding with its row, DEA_E_IO then. times: a column as long as the
  * other. */
-dea_status dea_clock_take(struct dea_context *ctx, const struct dea_table *table, size_t column,
-                          size_t times, double factor, double offset, size_t step, double *out);
+dea_status dea_clock_parse(struct dea_context *ctx, const struct dea_table *table, size_t column,
+                           size_t times, double factor, double offset, size_t step, double *out);
 /* Whether the times of a column without a unit can be seconds: those since 1970 in ms, us or ns and
  * the days of spreadsheets are findings that ask for time_unit, DEA_E_IO then. */
 dea_status dea_clock_check_seconds(struct dea_context *ctx, const struct dea_table *table,

@@ -44,7 +44,7 @@ static uint64_t integer(const unsigned char *at, size_t size, bool big)
 }
 
 /* Takes `size` bytes; NULL when there are less. */
-static const unsigned char *take_bytes(struct dea_tdms_bytes *bytes, uint64_t size)
+static const unsigned char *read_bytes(struct dea_tdms_bytes *bytes, uint64_t size)
 {
   if (bytes->failed || size > (uint64_t)(bytes->end - bytes->next)) {
     bytes->failed = true;
@@ -57,13 +57,13 @@ static const unsigned char *take_bytes(struct dea_tdms_bytes *bytes, uint64_t si
 
 uint32_t dea_tdms_u32(struct dea_tdms_bytes *bytes)
 {
-  const unsigned char *at = take_bytes(bytes, 4);
+  const unsigned char *at = read_bytes(bytes, 4);
   return at != NULL ? (uint32_t)integer(at, 4, bytes->big) : 0;
 }
 
 uint64_t dea_tdms_u64(struct dea_tdms_bytes *bytes)
 {
-  const unsigned char *at = take_bytes(bytes, 8);
+  const unsigned char *at = read_bytes(bytes, 8);
   return at != NULL ? integer(at, 8, bytes->big) : 0;
 }
 
@@ -107,10 +107,10 @@ double dea_tdms_value(const unsigned char *at, uint32_t type, bool big)
   }
 }
 
-static struct dea_tdms_text take_text(struct dea_tdms_bytes *bytes)
+static struct dea_tdms_text read_text(struct dea_tdms_bytes *bytes)
 {
   uint32_t length = dea_tdms_u32(bytes);
-  const unsigned char *at = take_bytes(bytes, length);
+  const unsigned char *at = read_bytes(bytes, length);
   return (struct dea_tdms_text){at != NULL ? (const char *)at : "", at != NULL ? length : 0};
 }
 
@@ -173,7 +173,7 @@ static dea_status add_to_order(struct dea_tdms *tdms, size_t object)
   return DEA_OK;
 }
 
-static void take_from_order(struct dea_tdms *tdms, size_t object)
+static void read_from_order(struct dea_tdms *tdms, size_t object)
 {
   size_t kept = 0;
   for (size_t i = 0; i < tdms->order_count; i++) {
@@ -191,7 +191,7 @@ static dea_status read_index(struct dea_tdms *tdms, struct dea_tdms_bytes *bytes
 {
   struct dea_tdms_object *object = &tdms->objects[index];
   if (length == no_values) {
-    take_from_order(tdms, index);
+    read_from_order(tdms, index);
     return DEA_OK;
   }
   if (length == daqmx_scaler || length == daqmx_line || length == daqmx_other_line) {
@@ -240,7 +240,7 @@ bool dea_tdms_is_linear(const struct dea_tdms_object *object)
 }
 
 /* What NI writes of the scale of raw values. */
-static void take_scale(struct dea_tdms_object *object, struct dea_tdms_text name,
+static void read_scale(struct dea_tdms_object *object, struct dea_tdms_text name,
                        struct dea_tdms_text text, double value)
 {
   if (same(name, "NI_Number_Of_Scales") && value > 0) {
@@ -258,14 +258,14 @@ static void take_scale(struct dea_tdms_object *object, struct dea_tdms_text name
 
 static void read_property(struct dea_tdms_bytes *bytes, struct dea_tdms_object *object)
 {
-  struct dea_tdms_text name = take_text(bytes), text = {"", 0};
+  struct dea_tdms_text name = read_text(bytes), text = {"", 0};
   uint32_t type = dea_tdms_u32(bytes);
   double value = NAN;
   if (type == DEA_TDMS_TEXT) {
-    text = take_text(bytes);
+    text = read_text(bytes);
   } else {
     size_t size = dea_tdms_size(type);
-    const unsigned char *at = size > 0 ? take_bytes(bytes, size) : NULL;
+    const unsigned char *at = size > 0 ? read_bytes(bytes, size) : NULL;
     value = at != NULL ? dea_tdms_value(at, type, bytes->big) : NAN;
     bytes->failed = bytes->failed || at == NULL;
   }
@@ -278,7 +278,7 @@ static void read_property(struct dea_tdms_bytes *bytes, struct dea_tdms_object *
   } else if ((same(name, "unit_string") || same(name, "NI_UnitDescription")) && text.length > 0) {
     object->unit = text;
   } else {
-    take_scale(object, name, text, value);
+    read_scale(object, name, text, value);
   }
 }
 
@@ -292,7 +292,7 @@ dea_status dea_tdms_metadata(struct dea_tdms *tdms, struct dea_tdms_bytes *bytes
   }
   uint32_t count = dea_tdms_u32(bytes);
   for (uint32_t i = 0; i < count && !bytes->failed; i++) {
-    struct dea_tdms_text path = take_text(bytes);
+    struct dea_tdms_text path = read_text(bytes);
     uint32_t length = dea_tdms_u32(bytes);
     size_t index;
     if (bytes->failed) {

@@ -163,7 +163,7 @@ static bool fits(struct dea_evidence *e, const struct dea_evidence_window *w, do
 // What was measured ------------------------------------------------------------------------------
 
 /* Alone: whether it may be that, and whether it says that the meter follows. */
-static bool look(struct dea_evidence *e, double volts, double from_s, double to_s)
+static bool check_step(struct dea_evidence *e, double volts, double from_s, double to_s)
 {
   double low_V, high_V, now_low_V, now_high_V, away_V = 2 * e->zero_V;
   find_between(e, from_s - e->lag_s, to_s, &low_V, &high_V);
@@ -223,7 +223,7 @@ enum dea_evidence_verdict dea_evidence_measured(struct dea_evidence *e, double v
 {
   enum dea_evidence_verdict verdict = DEA_EVIDENCE_FOLLOWS;
   turn(e, to_s);
-  if (!look(e, volts, from_s, to_s)) {
+  if (!check_step(e, volts, from_s, to_s)) {
     verdict = DEA_EVIDENCE_WRONG;
     e->of = 1;
     e->measured_V = volts;

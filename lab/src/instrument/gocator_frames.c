@@ -91,7 +91,7 @@ void dea_gocator_frames_place(struct dea_gocator_frames *frames,
   }
 }
 
-void dea_gocator_frames_see(struct dea_gocator_frames *frames, const struct dea_gdp_stamp *stamp,
+void dea_gocator_frames_add(struct dea_gocator_frames *frames, const struct dea_gdp_stamp *stamp,
                             double arrived_s)
 {
   if (!frames->anchored) {

@@ -29,7 +29,7 @@ dea_status dea_gocator_frames_begin(struct dea_context *ctx, struct dea_gocator_
 void dea_gocator_frames_place(struct dea_gocator_frames *frames,
                               const struct dea_gdp_profiles *profiles, size_t k);
 /* Sees a stamp that arrived at a time of the computer's clock, before it counts. */
-void dea_gocator_frames_see(struct dea_gocator_frames *frames, const struct dea_gdp_stamp *stamp,
+void dea_gocator_frames_add(struct dea_gocator_frames *frames, const struct dea_gdp_stamp *stamp,
                             double arrived_s);
 /* Time of a frame after start_s (of the computer's clock). stamp: NULL for one without, whose
  * arrival must do. false: it is from before that, or not after the last one. Adds the frames that

@@ -215,8 +215,8 @@ static dea_status add_channel(struct dea_context *ctx, struct comedi *c, struct 
 }
 
 /* The command of a part: on a timer, begun by a trigger, without an end. */
-static dea_status make_command(struct dea_context *ctx, struct comedi *c, struct part *part,
-                               bool writes)
+static dea_status build_command(struct dea_context *ctx, struct comedi *c, struct part *part,
+                                bool writes)
 {
   double rate_Hz = c->protocol->rate_Hz.si;
   struct dea_comedi_command *command = &part->command;
@@ -286,8 +286,8 @@ static dea_status set_up(struct dea_context *ctx, struct comedi *c)
             add_channel(ctx, c, &c->input, DEA_COMEDI_TO_PHYSICAL,
                         channel_number(p->inputs[i].terminal.text, "ai"), p->inputs[i].range_V.si));
   }
-  DEA_TRY(ctx, make_command(ctx, c, &c->output, true));
-  DEA_TRY(ctx, p->input_count > 0 ? make_command(ctx, c, &c->input, false) : DEA_OK);
+  DEA_TRY(ctx, build_command(ctx, c, &c->output, true));
+  DEA_TRY(ctx, p->input_count > 0 ? build_command(ctx, c, &c->input, false) : DEA_OK);
   c->descriptor = c->library.fileno(c->device);
   int flags = fcntl(c->descriptor, F_GETFL);
   if (flags < 0 || fcntl(c->descriptor, F_SETFL, flags | O_NONBLOCK) < 0) {
@@ -338,7 +338,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   status = status == DEA_OK ? dea_comedi_open(ctx, raw->library.text, &c->library) : status;
   status = status == DEA_OK ? set_up(ctx, c) : status;
   if (status != DEA_OK) {
-    status = dea_instrument_give_up(ctx, &c->base, status);
+    status = dea_instrument_abandon(ctx, &c->base, status);
     close_it(ctx, &c->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
@@ -449,8 +449,8 @@ static dea_status write_samples(struct dea_context *ctx, struct comedi *c, const
                   written < 0 ? strerror(errno) : "half a sample was written");
 }
 
-static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument,
-                      const double *volts, size_t count)
+static dea_status set_outputs(struct dea_context *ctx, struct dea_instrument *instrument,
+                              const double *volts, size_t count)
 {
   struct comedi *c = (struct comedi *)instrument;
   DEA_TRY(ctx, dea_protocol_guard(ctx, c->protocol, volts, count));
@@ -523,7 +523,7 @@ const struct dea_instrument_type dea_instrument_comedi = {
     .check = check,
     .open = open_it,
     .start = start_comedi,
-    .put = put,
+    .put = set_outputs,
     .get = get,
     .stop = stop,
     .address = dea_daq_address,

@@ -177,7 +177,7 @@ static dea_status silent(struct dea_context *ctx, const struct gocator *g)
 }
 
 /* A value of a measurement, if it is one that is wanted; NAN counts as lost. */
-static dea_status take_value(struct gocator *g, long id, double thousandths, double clock_s,
+static dea_status read_value(struct gocator *g, long id, double thousandths, double clock_s,
                              const struct dea_sink *sink)
 {
   for (size_t i = 0; i < g->raw.measurement_count; i++) {
@@ -202,7 +202,7 @@ static dea_status take_value(struct gocator *g, long id, double thousandths, dou
 }
 
 /* The group's profiles: the first one makes the grid, those after the start are handed over. */
-static dea_status take_profiles(struct dea_context *ctx, struct gocator *g, double arrived_s,
+static dea_status read_profiles(struct dea_context *ctx, struct gocator *g, double arrived_s,
                                 const struct dea_sink *sink)
 {
   const struct dea_gdp_profiles *p = &g->stream.profiles;
@@ -221,7 +221,7 @@ static dea_status take_profiles(struct dea_context *ctx, struct gocator *g, doub
     const struct dea_gdp_stamp *stamp = g->stream.stamp_count > 0 ? &g->stream.stamps[k] : NULL;
     double time_s;
     if (stamp != NULL) {
-      dea_gocator_frames_see(&g->frames, stamp, arrived_s);
+      dea_gocator_frames_add(&g->frames, stamp, arrived_s);
     }
     if (dea_gocator_frames_time(&g->frames, stamp, arrived_s, g->start_s, &time_s, &g->base.lost)) {
       g->heard_s = arrived_s; // what has no time that can be is none
@@ -246,7 +246,7 @@ static double group_clock_s(const struct gocator *g, double arrived_s)
 }
 
 /* sink NULL: before the start, nothing is handed over. */
-static dea_status take_data(struct dea_context *ctx, struct gocator *g, const unsigned char *bytes,
+static dea_status read_data(struct dea_context *ctx, struct gocator *g, const unsigned char *bytes,
                             size_t length, const struct dea_sink *sink)
 {
   double arrived_s = dea_clock_s();
@@ -256,13 +256,13 @@ static dea_status take_data(struct dea_context *ctx, struct gocator *g, const un
     case DEA_GDP_MORE:
       return DEA_OK;
     case DEA_GDP_STAMPS:
-      dea_gocator_frames_see(&g->frames, &g->stream.stamps[0], arrived_s);
+      dea_gocator_frames_add(&g->frames, &g->stream.stamps[0], arrived_s);
       break;
     case DEA_GDP_PROFILES:
-      DEA_TRY(ctx, take_profiles(ctx, g, arrived_s, sink));
+      DEA_TRY(ctx, read_profiles(ctx, g, arrived_s, sink));
       break;
     case DEA_GDP_MEASUREMENT:
-      DEA_TRY(ctx, take_value(g, (long)m->id, m->valid ? (double)m->thousandths : (double)NAN,
+      DEA_TRY(ctx, read_value(g, (long)m->id, m->valid ? (double)m->thousandths : (double)NAN,
                               group_clock_s(g, arrived_s), sink));
       break;
     case DEA_GDP_ODD:
@@ -283,7 +283,7 @@ static dea_status take_data(struct dea_context *ctx, struct gocator *g, const un
   }
 }
 
-static dea_status take_text(struct dea_context *ctx, struct gocator *g, const char *bytes,
+static dea_status read_text(struct dea_context *ctx, struct gocator *g, const char *bytes,
                             size_t length, const struct dea_sink *sink)
 {
   const char *line, *reason;
@@ -299,7 +299,7 @@ static dea_status take_text(struct dea_context *ctx, struct gocator *g, const ch
       g->asked_s = NAN;
     }
     while (dea_gocator_value_next(&line, &value)) {
-      DEA_TRY(ctx, take_value(g, value.id, value.thousandths, time_s, sink));
+      DEA_TRY(ctx, read_value(g, value.id, value.thousandths, time_s, sink));
     }
   }
   g->base.lost += sink != NULL ? g->lines.dropped - dropped : 0;
@@ -312,8 +312,8 @@ static dea_status receive(struct dea_context *ctx, struct gocator *g, double tim
 {
   unsigned char bytes[RECEIVE_SIZE];
   DEA_TRY(ctx, dea_socket_read(ctx, &g->data, timeout_s, bytes, sizeof bytes, length));
-  return is_text(g) ? take_text(ctx, g, (const char *)bytes, *length, sink)
-                    : take_data(ctx, g, bytes, *length, sink);
+  return is_text(g) ? read_text(ctx, g, (const char *)bytes, *length, sink)
+                    : read_data(ctx, g, bytes, *length, sink);
 }
 
 /* Asks for all measurements when it is time; *wait_s gets shorter until the next time. */

@@ -9,9 +9,9 @@
 #include "base/clock.h"
 #include "base/schema_value.h"
 #include "base/text.h"
-#include "instrument/asking.h"
 #include "instrument/instrument_make.h"
 #include "instrument/line_link.h"
+#include "instrument/poll_schedule.h"
 #include "instrument/serial.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ struct keyence {
   struct dea_instrument base;
   struct raw raw;
   struct dea_line_link link;
-  struct dea_asking asking;
+  struct dea_poll_schedule schedule;
   bool waits; // for an answer
   int failed; // questions in a row without a value or what stands for none
   double start_s;
@@ -114,7 +114,7 @@ static dea_status send_command(struct dea_context *ctx, const struct keyence *k,
 }
 
 /* Asks for a reading. */
-static dea_status ask(struct dea_context *ctx, struct keyence *k, size_t reading)
+static dea_status query(struct dea_context *ctx, struct keyence *k, size_t reading)
 {
   char command[COMMAND_SIZE];
   snprintf(command, sizeof command, "MS,%02d", (int)k->raw.readings[reading].output.si);
@@ -158,7 +158,7 @@ static dea_status refused(struct dea_context *ctx, const struct keyence *k, cons
   return dea_fail(ctx, DEA_E_INSTRUMENT,
                   "%s answered '%.40s' to a question for OUT %d; look at which outputs its "
                   "controller has",
-                  k->link.socket.name, answer, (int)k->raw.readings[k->asking.reading].output.si);
+                  k->link.socket.name, answer, (int)k->raw.readings[k->schedule.reading].output.si);
 }
 
 /* Asks for all readings once; in its mode for settings it measures nothing, and is led out of it.
@@ -169,8 +169,8 @@ static dea_status find_out(struct dea_context *ctx, struct keyence *k)
   for (size_t i = 0; i < k->raw.reading_count;) {
     const char *answer;
     double value;
-    k->asking.reading = i;
-    DEA_TRY(ctx, ask(ctx, k, i));
+    k->schedule.reading = i;
+    DEA_TRY(ctx, query(ctx, k, i));
     DEA_TRY(ctx, dea_line_wait(ctx, &k->link, k->raw.timeout_s.si, &answer));
     if (answer == NULL) {
       return dea_fail(ctx, DEA_E_INSTRUMENT,
@@ -209,9 +209,9 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   k->base.type = &dea_instrument_keyence;
   k->base.roles = DEA_GIVES_READINGS;
   add_readings(&k->base, &k->raw, k->raw.reading_count);
-  k->asking = (struct dea_asking){.count = k->raw.reading_count,
-                                  .interval_s = k->raw.interval_s.si,
-                                  .timeout_s = k->raw.timeout_s.si};
+  k->schedule = (struct dea_poll_schedule){.count = k->raw.reading_count,
+                                           .interval_s = k->raw.interval_s.si,
+                                           .timeout_s = k->raw.timeout_s.si};
   dea_status status = dea_serial_open(ctx, "the Keyence LK", k->raw.device.text,
                                       (int)k->raw.baud.si, k->raw.parity.value, &k->link.socket);
   status = status == DEA_OK ? find_out(ctx, k) : status;
@@ -228,7 +228,7 @@ static dea_status start_it(struct dea_context *ctx, struct dea_instrument *instr
   struct keyence *k = (struct keyence *)instrument;
   (void)ctx;
   k->start_s = dea_clock_s();
-  dea_asking_start(&k->asking, k->start_s);
+  dea_poll_schedule_start(&k->schedule, k->start_s);
   return DEA_OK;
 }
 
@@ -242,14 +242,14 @@ static dea_status lose(struct keyence *k, const struct dea_sink *sink)
 {
   k->waits = false;
   k->base.lost++;
-  return sink->reading(sink->user, k->asking.reading, dea_clock_s() - k->start_s, NAN);
+  return sink->reading(sink->user, k->schedule.reading, dea_clock_s() - k->start_s, NAN);
 }
 
 /* An answer; one that makes no sense is a lost value. */
-static dea_status take(struct dea_context *ctx, struct keyence *k, const char *answer,
-                       const struct dea_sink *sink)
+static dea_status parse_answer(struct dea_context *ctx, struct keyence *k, const char *answer,
+                               const struct dea_sink *sink)
 {
-  const struct raw_reading *r = &k->raw.readings[k->asking.reading];
+  const struct raw_reading *r = &k->raw.readings[k->schedule.reading];
   const char *at;
   double value, now_s = dea_clock_s();
   long output = output_of(answer, &at);
@@ -265,8 +265,8 @@ static dea_status take(struct dea_context *ctx, struct keyence *k, const char *a
   }
   k->waits = false;
   k->failed = 0;
-  return sink->reading(sink->user, k->asking.reading,
-                       0.5 * (k->asking.asked_s + now_s) - k->start_s,
+  return sink->reading(sink->user, k->schedule.reading,
+                       0.5 * (k->schedule.asked_s + now_s) - k->start_s,
                        value * r->factor.si + r->offset.si);
 }
 
@@ -280,26 +280,26 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
     char bytes[1024];
     const char *at = bytes, *answer;
     size_t length, dropped = k->link.lines.dropped;
-    double now_s = dea_clock_s(), next_s = k->asking.asked_s + k->asking.timeout_s;
+    double now_s = dea_clock_s(), next_s = k->schedule.asked_s + k->schedule.timeout_s;
     if (k->waits && now_s > next_s) {
       if (++k->failed >= FAILED_MAX) {
         return dea_fail(ctx, DEA_E_INSTRUMENT,
                         "%s did not answer %d questions in a row within %g s each",
-                        k->link.socket.name, FAILED_MAX, k->asking.timeout_s);
+                        k->link.socket.name, FAILED_MAX, k->schedule.timeout_s);
       }
       DEA_TRY(ctx, lose(k, sink));
     }
-    if (!k->waits && dea_asking_next(&k->asking, now_s, &next_s)) {
-      DEA_TRY(ctx, ask(ctx, k, k->asking.reading));
+    if (!k->waits && dea_poll_schedule_next(&k->schedule, now_s, &next_s)) {
+      DEA_TRY(ctx, query(ctx, k, k->schedule.reading));
     }
     DEA_TRY(ctx, dea_socket_read(ctx, &k->link.socket, fmin(until_s, next_s) - dea_clock_s(), bytes,
                                  sizeof bytes, &length));
     while ((answer = dea_line_next(&k->link.lines, &at, &length)) != NULL) {
       came = true;
-      DEA_TRY(ctx, take(ctx, k, answer, sink));
+      DEA_TRY(ctx, parse_answer(ctx, k, answer, sink));
     }
     if (k->link.lines.dropped > dropped) {
-      DEA_TRY(ctx, take(ctx, k, "", sink)); // what came makes no sense
+      DEA_TRY(ctx, parse_answer(ctx, k, "", sink)); // what came makes no sense
     }
   } while (!came && dea_clock_s() < until_s);
   return DEA_OK;

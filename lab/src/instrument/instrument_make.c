@@ -67,7 +67,7 @@ struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrume
   return zero;
 }
 
-dea_status dea_instrument_give_up(struct dea_context *ctx, struct dea_instrument *instrument,
+dea_status dea_instrument_abandon(struct dea_context *ctx, struct dea_instrument *instrument,
                                   dea_status status)
 {
   char why[512];

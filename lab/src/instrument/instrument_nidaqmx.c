@@ -125,7 +125,7 @@ static void channel_of(const struct nidaqmx *n, const char *terminal, char out[2
 }
 
 /* A task of the output alone, which is not on a clock yet. */
-static dea_status make_output(struct dea_context *ctx, struct nidaqmx *n)
+static dea_status build_output(struct dea_context *ctx, struct nidaqmx *n)
 {
   char channel[2 * DEA_TITLE_SIZE];
   double most_V = n->protocol->amplifier.control_V.si;
@@ -150,7 +150,7 @@ static dea_status set_zero(struct dea_context *ctx, struct nidaqmx *n)
 {
   const double zero = 0;
   clear(n, &n->output);
-  dea_status status = make_output(ctx, n);
+  dea_status status = build_output(ctx, n);
   if (status == DEA_OK) {
     n->found = true;
     int32_t code = n->driver.WriteAnalogF64(n->output, 1, 1, DEA_DAQ_PATIENCE_S, BY_CHANNEL, &zero,
@@ -169,7 +169,7 @@ static dea_status set_clock(struct dea_context *ctx, struct nidaqmx *n, void *ta
   return dea_daq_check_rate(ctx, n->device, rate_Hz, actual_Hz);
 }
 
-static dea_status make_input(struct dea_context *ctx, struct nidaqmx *n, int32_t wiring)
+static dea_status build_input(struct dea_context *ctx, struct nidaqmx *n, int32_t wiring)
 {
   char channel[2 * DEA_TITLE_SIZE], trigger[DEA_TITLE_SIZE + 32];
   if (n->protocol->input_count == 0) {
@@ -191,11 +191,11 @@ static dea_status make_input(struct dea_context *ctx, struct nidaqmx *n, int32_t
 static dea_status set_up(struct dea_context *ctx, struct nidaqmx *n, int32_t wiring)
 {
   DEA_TRY(ctx, set_zero(ctx, n));
-  DEA_TRY(ctx, make_output(ctx, n));
+  DEA_TRY(ctx, build_output(ctx, n));
   DEA_TRY(ctx, set_clock(ctx, n, n->output, n->daq.capacity));
   TRY(n, "play without repetition", SetWriteRegenMode, n->output, NO_REGENERATION);
   TRY(n, "take a queue of that length", CfgOutputBuffer, n->output, (uint32_t)n->daq.capacity);
-  return make_input(ctx, n, wiring);
+  return build_input(ctx, n, wiring);
 }
 
 static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -249,7 +249,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   status = status == DEA_OK ? load(ctx, raw, n) : status;
   status = status == DEA_OK ? set_up(ctx, n, wiring_values[raw->wiring.value]) : status;
   if (status != DEA_OK) {
-    status = n->found ? dea_instrument_give_up(ctx, &n->base, status) : status;
+    status = n->found ? dea_instrument_abandon(ctx, &n->base, status) : status;
     close_it(ctx, &n->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
@@ -275,8 +275,8 @@ static dea_status start_nidaqmx(struct dea_context *ctx, struct dea_instrument *
   return n->daq.queued > 0 ? start_tasks(ctx, n) : DEA_OK; // else with the first sample
 }
 
-static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument,
-                      const double *volts, size_t count)
+static dea_status set_outputs(struct dea_context *ctx, struct dea_instrument *instrument,
+                              const double *volts, size_t count)
 {
   struct nidaqmx *n = (struct nidaqmx *)instrument;
   DEA_TRY(ctx, dea_protocol_guard(ctx, n->protocol, volts, count));
@@ -300,7 +300,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
 
 /* Whether the output still plays. One that has nothing left to play is no failure until it is given
  * more: so ends every sequence. */
-static dea_status look_at_output(struct dea_context *ctx, struct nidaqmx *n)
+static dea_status check_output(struct dea_context *ctx, struct nidaqmx *n)
 {
   uint32_t done = 0;
   int32_t code = n->driver.IsTaskDone(n->output, &done);
@@ -319,9 +319,9 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   int32_t got = 0;
   if (!n->daq.running || n->input == NULL) {
     dea_clock_wait(timeout_s);
-    return n->daq.running ? look_at_output(ctx, n) : DEA_OK;
+    return n->daq.running ? check_output(ctx, n) : DEA_OK;
   }
-  DEA_TRY(ctx, look_at_output(ctx, n));
+  DEA_TRY(ctx, check_output(ctx, n));
   TRY(n, "measure on", GetReadAvailSampPerChan, n->input, &ready);
   size_t most = n->daq.scans_room, wanted = ready < 1 ? 1 : ready < most ? ready : most;
   if (ready == 0 && timeout_s <= 0) {
@@ -343,7 +343,7 @@ const struct dea_instrument_type dea_instrument_nidaqmx = {
     .check = check,
     .open = open_it,
     .start = start_nidaqmx,
-    .put = put,
+    .put = set_outputs,
     .get = get,
     .stop = stop,
     .address = dea_daq_address,

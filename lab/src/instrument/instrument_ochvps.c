@@ -76,7 +76,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_line_supply *s)
   const struct raw *raw = s->raw_all;
   s->range_V = s->protocol->amplifier.highest_V.si;
   for (size_t i = 0; i < raw->connect_count; i++) {
-    DEA_TRY(ctx, dea_line_supply_ask(ctx, s, raw->connect[i].text, NULL));
+    DEA_TRY(ctx, dea_line_supply_query(ctx, s, raw->connect[i].text, NULL));
   }
   return DEA_OK;
 }

@@ -97,8 +97,8 @@ static double time_of(struct optoncdt *o, double arrived_s)
 }
 
 /* A value that came at arrived_s; NAN where it says why there is none. */
-static dea_status take(struct optoncdt *o, int number, double arrived_s,
-                       const struct dea_sink *sink)
+static dea_status add_value(struct optoncdt *o, int number, double arrived_s,
+                            const struct dea_sink *sink)
 {
   double interval_s = 1 / o->raw.rate_Hz.si, value = NAN;
   double time_s = time_of(o, arrived_s);
@@ -112,7 +112,7 @@ static dea_status take(struct optoncdt *o, int number, double arrived_s,
 }
 
 /* The bytes of a piece, the last of which came at now_s. */
-static dea_status take_bytes(struct optoncdt *o, const unsigned char *bytes, size_t length,
+static dea_status read_bytes(struct optoncdt *o, const unsigned char *bytes, size_t length,
                              double now_s, const struct dea_sink *sink)
 {
   for (size_t i = 0; i < length; i++) {
@@ -125,7 +125,7 @@ static dea_status take_bytes(struct optoncdt *o, const unsigned char *bytes, siz
       int number = (o->upper << 7) | bytes[i];
       double behind_s = 0.5 * (double)(length - 1 - i) / o->raw.rate_Hz.si;
       o->upper = -1;
-      dea_status status = take(o, number, now_s - behind_s, sink);
+      dea_status status = add_value(o, number, now_s - behind_s, sink);
       if (status != DEA_OK) {
         return status;
       }
@@ -145,7 +145,7 @@ static dea_status listen_for(struct dea_context *ctx, struct optoncdt *o, double
   *came = length > 0;
   if (*came) {
     o->heard_s = now_s;
-    return take_bytes(o, bytes, length, now_s, sink);
+    return read_bytes(o, bytes, length, now_s, sink);
   }
   return now_s - o->heard_s <= o->raw.timeout_s.si
              ? DEA_OK

@@ -199,11 +199,11 @@ static dea_status check(const struct dea_reader *reader, const void *data,
 }
 
 /* Whether it took its setup: looks at its error queue, which was empty before. */
-static dea_status look_for_error(struct dea_context *ctx, struct dea_scpi *s)
+static dea_status check_error(struct dea_context *ctx, struct dea_scpi *s)
 {
   const char *response, *text;
   int code;
-  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, s->raw.timeout_s.si, "SYST:ERR?", &response));
+  DEA_TRY(ctx, dea_scpi_query(ctx, &s->link, s->raw.timeout_s.si, "SYST:ERR?", &response));
   if (response == NULL || !dea_scpi_error(response, &code, &text)) {
     return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                            "%s does not answer SYST:ERR?, so that its setup is not checked",
@@ -219,7 +219,7 @@ static dea_status look_for_error(struct dea_context *ctx, struct dea_scpi *s)
 static dea_status identify(struct dea_context *ctx, struct dea_scpi *s)
 {
   const char *response, *wanted = s->raw.identity.text;
-  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, s->raw.timeout_s.si, "*IDN?", &response));
+  DEA_TRY(ctx, dea_scpi_query(ctx, &s->link, s->raw.timeout_s.si, "*IDN?", &response));
   if (response == NULL) {
     return dea_scpi_no_response(ctx, s, "*IDN?", s->raw.timeout_s.si);
   }
@@ -247,7 +247,7 @@ static dea_status set_up(struct dea_context *ctx, struct dea_scpi *s)
     DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, timeout_s, s->raw.setup[i].text));
   }
   DEA_TRY(ctx, plays ? dea_scpi_output_open(ctx, s) : DEA_OK);
-  return plays || s->raw.setup_count > 0 ? look_for_error(ctx, s) : DEA_OK;
+  return plays || s->raw.setup_count > 0 ? check_error(ctx, s) : DEA_OK;
 }
 
 static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -305,7 +305,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   }
   if (status != DEA_OK) {
     status =
-        s->link.socket.descriptor >= 0 ? dea_instrument_give_up(ctx, &s->base, status) : status;
+        s->link.socket.descriptor >= 0 ? dea_instrument_abandon(ctx, &s->base, status) : status;
     close_it(ctx, &s->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
@@ -325,10 +325,10 @@ static dea_status start_scpi(struct dea_context *ctx, struct dea_instrument *ins
 {
   struct dea_scpi *s = (struct dea_scpi *)instrument;
   s->start_s = dea_clock_s();
-  s->asking.count = s->raw.reading_count;
-  s->asking.interval_s = s->raw.interval_s.si;
-  s->asking.timeout_s = s->raw.timeout_s.si;
-  dea_asking_start(&s->asking, s->start_s);
+  s->schedule.count = s->raw.reading_count;
+  s->schedule.interval_s = s->raw.interval_s.si;
+  s->schedule.timeout_s = s->raw.timeout_s.si;
+  dea_poll_schedule_start(&s->schedule, s->start_s);
   return s->output.queue != NULL ? dea_scpi_output_start(ctx, s) : DEA_OK;
 }
 
@@ -337,10 +337,10 @@ static void set_clock(struct dea_instrument *instrument)
   ((struct dea_scpi *)instrument)->start_s = dea_clock_s();
 }
 
-static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument,
-                      const double *volts, size_t count)
+static dea_status set_outputs(struct dea_context *ctx, struct dea_instrument *instrument,
+                              const double *volts, size_t count)
 {
-  return dea_scpi_output_put(ctx, (struct dea_scpi *)instrument, volts, count);
+  return dea_scpi_output_set(ctx, (struct dea_scpi *)instrument, volts, count);
 }
 
 /* The SI value of a response with a unit; *fits: that is one of the reading's quantity. */
@@ -410,10 +410,10 @@ static dea_status refuse(struct dea_context *ctx, struct dea_scpi *s, size_t rea
 }
 
 /* A response to what was asked: to the output, or the value of a reading. */
-static dea_status take_response(struct dea_context *ctx, struct dea_scpi *s, const char *response,
+static dea_status read_response(struct dea_context *ctx, struct dea_scpi *s, const char *response,
                                 const struct dea_sink *sink)
 {
-  size_t reading = s->asking.reading;
+  size_t reading = s->schedule.reading;
   double value, now_s = dea_clock_s();
   if (s->asked == DEA_SCPI_NOTHING) {
     return dea_line_alone(ctx, &s->link, NULL, response, strlen(response));
@@ -441,22 +441,22 @@ static dea_status take_response(struct dea_context *ctx, struct dea_scpi *s, con
 }
 
 /* Asks for the reading that is due, if any and nothing is waited for; *next_s: when one will be. */
-static dea_status ask_next(struct dea_context *ctx, struct dea_scpi *s, double *next_s)
+static dea_status query_next(struct dea_context *ctx, struct dea_scpi *s, double *next_s)
 {
   double now_s = dea_clock_s();
   *next_s = INFINITY;
   if (s->asked == DEA_SCPI_READING) {
-    const char *query = s->raw.readings[s->asking.reading].query.text;
+    const char *query = s->raw.readings[s->schedule.reading].query.text;
     *next_s = s->asked_s + s->raw.timeout_s.si;
     return now_s < *next_s ? DEA_OK : dea_scpi_no_response(ctx, s, query, s->raw.timeout_s.si);
   }
-  if (s->asked != DEA_SCPI_NOTHING || !dea_asking_next(&s->asking, now_s, next_s)) {
+  if (s->asked != DEA_SCPI_NOTHING || !dea_poll_schedule_next(&s->schedule, now_s, next_s)) {
     return DEA_OK;
   }
   s->asked = DEA_SCPI_READING;
   s->asked_s = now_s;
   return dea_scpi_question(ctx, &s->link, s->raw.timeout_s.si,
-                           s->raw.readings[s->asking.reading].query.text);
+                           s->raw.readings[s->schedule.reading].query.text);
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
@@ -471,17 +471,17 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
     double play_s, ask_s;
     const char *at = bytes, *response;
     DEA_TRY(ctx, dea_scpi_output_play(ctx, s, &play_s));
-    DEA_TRY(ctx, ask_next(ctx, s, &ask_s));
+    DEA_TRY(ctx, query_next(ctx, s, &ask_s));
     double next_s = fmin(until_s, fmin(play_s, ask_s));
     DEA_TRY(ctx, dea_socket_read(ctx, &s->link.socket, next_s - dea_clock_s(), bytes, sizeof bytes,
                                  &length));
     while ((response = dea_line_next(&s->link.lines, &at, &length)) != NULL) {
       came = true;
       DEA_TRY(ctx, dea_line_alone(ctx, &s->link, response, at, length));
-      DEA_TRY(ctx, take_response(ctx, s, response, sink));
+      DEA_TRY(ctx, read_response(ctx, s, response, sink));
     }
     if (s->link.lines.dropped > dropped) {
-      DEA_TRY(ctx, take_response(ctx, s, "", sink)); // what came makes no sense
+      DEA_TRY(ctx, read_response(ctx, s, "", sink)); // what came makes no sense
     }
     left_s = until_s - dea_clock_s();
   } while (!came && left_s > 0);
@@ -497,7 +497,7 @@ const struct dea_instrument_type dea_instrument_scpi = {
     .open = open_it,
     .start = start_scpi,
     .set_clock = set_clock,
-    .put = put,
+    .put = set_outputs,
     .get = get,
     .hold = dea_scpi_output_hold,
     .stop = dea_scpi_stop,

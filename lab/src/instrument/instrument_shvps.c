@@ -67,12 +67,12 @@ static dea_status prepare(struct dea_context *ctx, struct dea_line_supply *s)
   const struct raw *raw = s->raw_all;
   const char *name = s->link.socket.name, *answer;
   char command[DEA_LINE_SUPPLY_COMMAND_SIZE];
-  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "QName", &answer));
+  DEA_TRY(ctx, dea_line_supply_query(ctx, s, "QName", &answer));
   if (!is_named(raw, answer)) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is a '%.60s', not a '%.60s'; look at its device",
                     name, answer, raw->name.text);
   }
-  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "QVmax", &answer));
+  DEA_TRY(ctx, dea_line_supply_query(ctx, s, "QVmax", &answer));
   if (!is_number(answer, &s->range_V) || !(s->range_V > 0)) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s answered '%.40s' to 'QVmax', which is no voltage",
                     name, answer);
@@ -80,11 +80,11 @@ static dea_status prepare(struct dea_context *ctx, struct dea_line_supply *s)
   // A frequency that nothing plays with: one that begins anew has another, and so has another's.
   snprintf(command, sizeof command, "SF%.2f",
            marks_from_Hz + 0.25 * floor(fmod(1e3 * dea_clock_s(), marks)));
-  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, command, NULL));
-  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "QF", &answer));
+  DEA_TRY(ctx, dea_line_supply_query(ctx, s, command, NULL));
+  DEA_TRY(ctx, dea_line_supply_query(ctx, s, "QF", &answer));
   snprintf(s->base.mark, sizeof s->base.mark, "%.*s", (int)sizeof s->base.mark - 1, answer);
-  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, "SSwSrc0", NULL));
-  return dea_line_supply_ask(ctx, s, "SSwMode1", NULL);
+  DEA_TRY(ctx, dea_line_supply_query(ctx, s, "SSwSrc0", NULL));
+  return dea_line_supply_query(ctx, s, "SSwMode1", NULL);
 }
 
 static const char *const off[] = {"SSwMode0", NULL};

@@ -156,7 +156,7 @@ static struct dea_sim_settings settings_of(const struct raw *raw)
                                    raw->fatigue_s.si};
 }
 
-static void take_noise(const struct raw *raw, struct dea_sim_noise *out)
+static void read_noise(const struct raw *raw, struct dea_sim_noise *out)
 {
   *out = (struct dea_sim_noise){
       .sigma = {[DEA_CHANNEL_VOLTAGE] = raw->voltage_V.si,
@@ -223,7 +223,7 @@ static dea_status open_sim(struct dea_context *ctx, const void *data,
   s->real_time = raw->pace.value == REAL;
   s->base.patient = !s->real_time;
   s->frame_rate_Hz = raw->frame_rate_Hz.si;
-  take_noise(raw, &s->noise);
+  read_noise(raw, &s->noise);
   dea_status status = dea_sim_bench_create(ctx, protocol, &settings, &s->bench);
   status = status == DEA_OK ? prepare(ctx, raw, s) : status;
   if (status != DEA_OK) {
@@ -253,8 +253,8 @@ static size_t due_samples(const struct sim *s)
   return passed < (double)s->put ? (size_t)fmax(passed, 0) : s->put;
 }
 
-static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument,
-                      const double *volts, size_t count)
+static dea_status set_outputs(struct dea_context *ctx, struct dea_instrument *instrument,
+                              const double *volts, size_t count)
 {
   static const double longest_s = 1; // that is queued in real time
   struct sim *s = (struct sim *)instrument;
@@ -341,7 +341,7 @@ const struct dea_instrument_type dea_instrument_sim = {
     .check = check,
     .open = open_sim,
     .start = start_sim,
-    .put = put,
+    .put = set_outputs,
     .get = get,
     .stop = stop,
     .close = close_sim,

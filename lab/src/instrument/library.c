@@ -38,8 +38,8 @@ static bool name_list(char out[DEA_PATH_SIZE])
 }
 
 /* Whether the list has it. What is wrong with the list is a finding. */
-static dea_status look_up(struct dea_context *ctx, const char *file, const char *text,
-                          size_t length, const char *wanted, bool *found)
+static dea_status find_symbol(struct dea_context *ctx, const char *file, const char *text,
+                              size_t length, const char *wanted, bool *found)
 {
   struct dea_yaml *yaml;
   struct list list = {.count = 0};
@@ -74,7 +74,7 @@ dea_status dea_library_check(const struct dea_reader *reader, const struct dea_l
   if (!found && named) {
     dea_status status = dea_file_read(ctx, path, LIST_SIZE_MAX, &text, &length);
     if (status == DEA_OK) {
-      status = look_up(ctx, path, text, length, file->text, &found);
+      status = find_symbol(ctx, path, text, length, file->text, &found);
       dea_free(ctx, text);
     } else if (status == DEA_E_IO) { // there is none
       dea_context_clear(ctx);

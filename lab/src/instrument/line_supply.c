@@ -53,8 +53,8 @@ static dea_status no_sense(struct dea_context *ctx, struct dea_line_supply *s, c
                   s->language->is_error(answer) ? "is an error" : "makes no sense");
 }
 
-dea_status dea_line_supply_ask(struct dea_context *ctx, struct dea_line_supply *s,
-                               const char *command, const char **answer)
+dea_status dea_line_supply_query(struct dea_context *ctx, struct dea_line_supply *s,
+                                 const char *command, const char **answer)
 {
   const char *line;
   DEA_TRY(ctx, dea_line_supply_send(ctx, &s->link, s->raw.behind_s.si, command));
@@ -145,11 +145,11 @@ static dea_status set_up(struct dea_context *ctx, struct dea_line_supply *s)
   double volts;
   DEA_TRY(ctx, wake(ctx, s));
   set_command(s, 0, command);
-  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, command, &answer));
+  DEA_TRY(ctx, dea_line_supply_query(ctx, s, command, &answer));
   if (!s->language->is_set(answer, 0)) {
     return no_sense(ctx, s, command, answer);
   }
-  DEA_TRY(ctx, dea_line_supply_ask(ctx, s, s->language->measure, &answer));
+  DEA_TRY(ctx, dea_line_supply_query(ctx, s, s->language->measure, &answer));
   if (!s->language->voltage(answer, &volts)) {
     return no_sense(ctx, s, s->language->measure, answer);
   }
@@ -203,7 +203,7 @@ dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instru
   status = status == DEA_OK ? set_up(ctx, s) : status;
   if (status != DEA_OK) {
     status =
-        s->link.socket.descriptor >= 0 ? dea_instrument_give_up(ctx, &s->base, status) : status;
+        s->link.socket.descriptor >= 0 ? dea_instrument_abandon(ctx, &s->base, status) : status;
     dea_line_supply_close(ctx, &s->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
@@ -237,8 +237,8 @@ dea_status dea_line_supply_start(struct dea_context *ctx, struct dea_instrument 
 
 // Playing ----------------------------------------------------------------------------------------
 
-static dea_status ask(struct dea_context *ctx, struct dea_line_supply *s,
-                      enum dea_line_supply_question what, const char *command)
+static dea_status query(struct dea_context *ctx, struct dea_line_supply *s,
+                        enum dea_line_supply_question what, const char *command)
 {
   s->asked = what;
   s->asked_s = dea_clock_s();
@@ -262,7 +262,7 @@ static dea_status send_voltage(struct dea_context *ctx, struct dea_line_supply *
   dea_timed_sent(&s->output, volts, dea_clock_s());
   s->base.doubt = dea_evidence_doubt(&s->output.evidence);
   set_command(s, s->set_V, command);
-  return ask(ctx, s, DEA_LINE_SUPPLY_SET, command);
+  return query(ctx, s, DEA_LINE_SUPPLY_SET, command);
 }
 
 static const char *asked_command(const struct dea_line_supply *s,
@@ -276,12 +276,12 @@ static const char *asked_command(const struct dea_line_supply *s,
 }
 
 /* The voltage and the mark take turns, but for a voltage that has yet to be seen away from 0 V. */
-static dea_status ask_back(struct dea_context *ctx, struct dea_line_supply *s)
+static dea_status query_back(struct dea_context *ctx, struct dea_line_supply *s)
 {
   bool wanted = s->output.sent_V != 0 && dea_evidence_wants(&s->output.evidence);
   bool mark = s->language->mark != NULL && s->last == DEA_LINE_SUPPLY_MEASURE && !wanted;
   s->last = mark ? DEA_LINE_SUPPLY_MARK : DEA_LINE_SUPPLY_MEASURE;
-  return ask(ctx, s, s->last, mark ? s->language->mark : s->language->measure);
+  return query(ctx, s, s->last, mark ? s->language->mark : s->language->measure);
 }
 
 static dea_status play(struct dea_context *ctx, struct dea_line_supply *s, double *next_s)
@@ -294,7 +294,7 @@ static dea_status play(struct dea_context *ctx, struct dea_line_supply *s, doubl
   if (!dea_timed_plays(o)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_timed_take(ctx, o, now_s));
+  DEA_TRY(ctx, dea_timed_read(ctx, o, now_s));
   switch (dea_timed_next(o, now_s, open ? s->asked_s + s->raw.behind_s.si : (double)NAN, next_s)) {
   case DEA_TIMED_LATE:
     return no_answer(ctx, s, asked_command(s, command));
@@ -302,7 +302,7 @@ static dea_status play(struct dea_context *ctx, struct dea_line_supply *s, doubl
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is more than %g s behind with its voltage",
                     s->link.socket.name, s->raw.behind_s.si);
   case DEA_TIMED_MEASURE:
-    return ask_back(ctx, s);
+    return query_back(ctx, s);
   case DEA_TIMED_SEND:
     return send_voltage(ctx, s, o->wanted_V);
   case DEA_TIMED_NOTHING:
@@ -311,7 +311,7 @@ static dea_status play(struct dea_context *ctx, struct dea_line_supply *s, doubl
   return DEA_OK;
 }
 
-static dea_status take_voltage(struct dea_context *ctx, struct dea_line_supply *s, double volts)
+static dea_status read_voltage(struct dea_context *ctx, struct dea_line_supply *s, double volts)
 {
   if (s->pending_count < DEA_LINE_SUPPLY_PENDING && s->base.reading_count > 0) {
     s->pending[s->pending_count].time_s = 0.5 * (s->asked_s + dea_clock_s()) - s->start_s;
@@ -323,7 +323,8 @@ static dea_status take_voltage(struct dea_context *ctx, struct dea_line_supply *
   return status;
 }
 
-static dea_status take(struct dea_context *ctx, struct dea_line_supply *s, const char *answer)
+static dea_status parse_answer(struct dea_context *ctx, struct dea_line_supply *s,
+                               const char *answer)
 {
   char command[DEA_LINE_SUPPLY_COMMAND_SIZE];
   double volts;
@@ -345,7 +346,7 @@ static dea_status take(struct dea_context *ctx, struct dea_line_supply *s, const
                     "%s answered '%.40s' to '%s' where it was set to '%s': it has begun anew",
                     s->link.socket.name, answer, s->language->mark, s->base.mark);
   }
-  return measured ? take_voltage(ctx, s, volts) : DEA_OK;
+  return measured ? read_voltage(ctx, s, volts) : DEA_OK;
 }
 
 /* Plays until then, or until an answer has come. */
@@ -360,16 +361,16 @@ static dea_status serve(struct dea_context *ctx, void *supply, double until_s)
   if (s->link.lines.dropped > dropped) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s says what makes no sense", s->link.socket.name);
   }
-  return answer != NULL ? take(ctx, s, answer) : DEA_OK;
+  return answer != NULL ? parse_answer(ctx, s, answer) : DEA_OK;
 }
 
-dea_status dea_line_supply_put(struct dea_context *ctx, struct dea_instrument *instrument,
+dea_status dea_line_supply_set(struct dea_context *ctx, struct dea_instrument *instrument,
                                const double *volts, size_t count)
 {
   struct dea_line_supply *s = (struct dea_line_supply *)instrument;
   double next_s;
   DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, volts, count));
-  DEA_TRY(ctx, dea_timed_put(ctx, &s->output, volts, count, serve, s));
+  DEA_TRY(ctx, dea_timed_write(ctx, &s->output, volts, count, serve, s));
   return play(ctx, s, &next_s);
 }
 

@@ -94,8 +94,8 @@ struct dea_line_supply {
 
 /* Sends a command and waits for its answer; an error or none is DEA_E_INSTRUMENT. *answer: lent
  * until the next; NULL: it does not matter. */
-dea_status dea_line_supply_ask(struct dea_context *ctx, struct dea_line_supply *s,
-                               const char *command, const char **answer);
+dea_status dea_line_supply_query(struct dea_context *ctx, struct dea_line_supply *s,
+                                 const char *command, const char **answer);
 
 // Of a kind's type; raw begins with struct dea_line_supply_raw.
 dea_status dea_line_supply_check(const struct dea_reader *reader, const void *raw,
@@ -104,7 +104,7 @@ dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instru
                                 const struct dea_line_supply_language *language, const void *raw,
                                 const struct dea_protocol *protocol, struct dea_instrument **out);
 dea_status dea_line_supply_start(struct dea_context *ctx, struct dea_instrument *instrument);
-dea_status dea_line_supply_put(struct dea_context *ctx, struct dea_instrument *instrument,
+dea_status dea_line_supply_set(struct dea_context *ctx, struct dea_instrument *instrument,
                                const double *volts, size_t count);
 dea_status dea_line_supply_get(struct dea_context *ctx, struct dea_instrument *instrument,
                                double timeout_s, const struct dea_sink *sink);
@@ -121,7 +121,7 @@ void dea_line_supply_close(struct dea_context *ctx, struct dea_instrument *instr
 /* The members of a kind's type that all of them share. */
 #define DEA_LINE_SUPPLY_MEMBERS                                                                    \
   .roles = DEA_PLAYS_OUTPUT | DEA_GIVES_READINGS, .start = dea_line_supply_start,                  \
-  .put = dea_line_supply_put, .get = dea_line_supply_get, .hold = dea_line_supply_hold,            \
+  .put = dea_line_supply_set, .get = dea_line_supply_get, .hold = dea_line_supply_hold,            \
   .stop = dea_line_supply_stop, .address = dea_line_supply_address, .close = dea_line_supply_close
 
 /* What a line supply does in common; by line_supply_zero.c too. */

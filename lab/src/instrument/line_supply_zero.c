@@ -66,7 +66,7 @@ static bool command_zero(struct dea_context *ctx, const struct zeroing *z)
 }
 
 /* Says once that another supply may be there. */
-static void tell(struct dea_context *ctx, struct zeroing *z, const char *answer)
+static void report(struct dea_context *ctx, struct zeroing *z, const char *answer)
 {
   if (!z->told) {
     (void)dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
@@ -92,7 +92,7 @@ static bool read_voltage(struct dea_context *ctx, struct zeroing *z, double *vol
   } while (!z->language->is_synced(answer));
   if (z->named != NULL && z->language->is_named != NULL &&
       !z->language->is_named(z->named, answer)) {
-    tell(ctx, z, answer);
+    report(ctx, z, answer);
     return false;
   }
   return dea_line_supply_send(ctx, z->link, poll_s, z->language->measure) == DEA_OK &&
@@ -142,13 +142,13 @@ static bool is_same(struct dea_context *ctx, struct zeroing *z)
   }
   bool same = strcmp(answer, z->past.mark) == 0;
   if (!same) {
-    tell(ctx, z, answer);
+    report(ctx, z, answer);
   }
   return same;
 }
 
 /* Says that another program has the line, too: once, as nothing else can be done then. */
-static void tell_of_other(struct dea_context *ctx, const struct dea_socket *line, long holder)
+static void report_other_device(struct dea_context *ctx, const struct dea_socket *line, long holder)
 {
   char text[DEA_SERIAL_HOLDER_SIZE];
   dea_serial_holder_text(holder, text);
@@ -175,7 +175,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
       turn.wait_s -= waited_s;
       told = command_zero(ctx, z) && (turn.beside || (is_same(ctx, z) && read_back(ctx, z, &zero)));
       if (turn.beside) {
-        tell_of_other(ctx, &link.socket, turn.holder);
+        report_other_device(ctx, &link.socket, turn.holder);
         zero.why = dea_zero_other;
       }
       dea_socket_close(&link.socket);

@@ -4,9 +4,9 @@
  * answered. */
 #pragma once
 
-#include "instrument/asking.h"
 #include "instrument/instrument_make.h"
 #include "instrument/line_link.h"
+#include "instrument/poll_schedule.h"
 #include "instrument/scpi_parse.h"
 #include "instrument/timed_output.h"
 
@@ -42,8 +42,8 @@ struct dea_scpi {
   const struct dea_protocol *protocol; // lent
   struct dea_line_link link;
   char name[DEA_SOCKET_NAME_SIZE + 8];
-  double start_s;           // computer's clock at start; NAN before
-  struct dea_asking asking; // of the readings
+  double start_s;                    // computer's clock at start; NAN before
+  struct dea_poll_schedule schedule; // of the readings
   /* What stood behind the first number of each; valid when `known`. */
   char suffix[DEA_INSTRUMENT_READINGS_MAX][DEA_SCPI_SUFFIX_SIZE];
   bool known[DEA_INSTRUMENT_READINGS_MAX], noted_suffix;
@@ -70,8 +70,8 @@ bool dea_scpi_is_same(const struct dea_scpi_raw *raw, const char *mark, const ch
 dea_status dea_scpi_question(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
                              const char *question);
 /* Sends a question and waits for its response. */
-dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
-                        const char *question, const char **out);
+dea_status dea_scpi_query(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
+                          const char *question, const char **out);
 dea_status dea_scpi_no_response(struct dea_context *ctx, const struct dea_scpi *s,
                                 const char *question, double timeout_s);
 
@@ -88,7 +88,7 @@ dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s);
 /* Sets 0 V before anything is played and looks whether it is there. */
 dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s);
 dea_status dea_scpi_output_start(struct dea_context *ctx, struct dea_scpi *s);
-dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, const double *volts,
+dea_status dea_scpi_output_set(struct dea_context *ctx, struct dea_scpi *s, const double *volts,
                                size_t count);
 /* Does what is due: takes samples out of the queue, sends the last of them, measures, feeds the
  * watchdog. *next_s: clock at which there is something to do. DEA_E_INTERLOCK after a stall. */

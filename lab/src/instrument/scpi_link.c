@@ -34,8 +34,8 @@ dea_status dea_scpi_question(struct dea_context *ctx, struct dea_line_link *link
   return dea_scpi_send(ctx, link, timeout_s, question);
 }
 
-dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
-                        const char *question, const char **out)
+dea_status dea_scpi_query(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
+                          const char *question, const char **out)
 {
   *out = NULL;
   DEA_TRY(ctx, dea_scpi_question(ctx, link, timeout_s, question));

@@ -43,8 +43,8 @@ bool dea_scpi_measured(const struct dea_scpi_raw *raw, const struct dea_protocol
 
 // What is set ------------------------------------------------------------------------------------
 
-static dea_status ask(struct dea_context *ctx, struct dea_scpi *s, enum dea_scpi_question what,
-                      const char *question)
+static dea_status request(struct dea_context *ctx, struct dea_scpi *s, enum dea_scpi_question what,
+                          const char *question)
 {
   s->asked = what;
   s->asked_s = dea_clock_s();
@@ -61,7 +61,7 @@ static dea_status send_voltage(struct dea_context *ctx, struct dea_scpi *s, doub
   dea_timed_sent(&s->output, volts, dea_clock_s());
   s->base.doubt = dea_evidence_doubt(&s->output.evidence);
   DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, s->raw.behind_s.si, command));
-  return ask(ctx, s, DEA_SCPI_CONFIRM, s->raw.confirm.text);
+  return request(ctx, s, DEA_SCPI_CONFIRM, s->raw.confirm.text);
 }
 
 static dea_status no_sense(struct dea_context *ctx, const struct dea_scpi *s, const char *question,
@@ -95,7 +95,7 @@ dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s)
   char command[DEA_SCPI_COMMAND_SIZE];
   dea_scpi_output_command(&s->raw, 0, command);
   DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, timeout_s, command));
-  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, timeout_s, s->raw.confirm.text, &response));
+  DEA_TRY(ctx, dea_scpi_query(ctx, &s->link, timeout_s, s->raw.confirm.text, &response));
   if (response == NULL || !dea_scpi_confirms(&s->raw, response)) {
     return dea_scpi_no_response(ctx, s, s->raw.confirm.text, timeout_s);
   }
@@ -108,7 +108,7 @@ dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s)
                            "at 0 V will not be known",
                            s->name);
   }
-  DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, timeout_s, s->raw.measure.text, &response));
+  DEA_TRY(ctx, dea_scpi_query(ctx, &s->link, timeout_s, s->raw.measure.text, &response));
   if (response == NULL) {
     return dea_scpi_no_response(ctx, s, s->raw.measure.text, timeout_s);
   }
@@ -168,7 +168,7 @@ dea_status dea_scpi_output_play(struct dea_context *ctx, struct dea_scpi *s, dou
   if (!dea_timed_plays(o)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_timed_take(ctx, o, now_s));
+  DEA_TRY(ctx, dea_timed_read(ctx, o, now_s));
   DEA_TRY(ctx, feed(ctx, s, now_s, &feed_s));
   enum dea_timed_action action = dea_timed_next(o, now_s, late_at(s), next_s);
   *next_s = fmin(*next_s, feed_s);
@@ -180,7 +180,7 @@ dea_status dea_scpi_output_play(struct dea_context *ctx, struct dea_scpi *s, dou
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is more than %g s behind with its voltage", s->name,
                     raw->behind_s.si);
   case DEA_TIMED_MEASURE:
-    return ask(ctx, s, DEA_SCPI_MEASURE, raw->measure.text);
+    return request(ctx, s, DEA_SCPI_MEASURE, raw->measure.text);
   case DEA_TIMED_SEND:
     return send_voltage(ctx, s, o->wanted_V);
   case DEA_TIMED_NOTHING:
@@ -205,12 +205,12 @@ static dea_status serve(struct dea_context *ctx, void *supply, double until_s)
   return response != NULL ? dea_scpi_output_response(ctx, s, response) : DEA_OK;
 }
 
-dea_status dea_scpi_output_put(struct dea_context *ctx, struct dea_scpi *s, const double *volts,
+dea_status dea_scpi_output_set(struct dea_context *ctx, struct dea_scpi *s, const double *volts,
                                size_t count)
 {
   double next_s;
   DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, volts, count));
-  DEA_TRY(ctx, dea_timed_put(ctx, &s->output, volts, count, serve, s));
+  DEA_TRY(ctx, dea_timed_write(ctx, &s->output, volts, count, serve, s));
   return dea_scpi_output_play(ctx, s, &next_s);
 }
 

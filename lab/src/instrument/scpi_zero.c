@@ -52,8 +52,8 @@ static void command_end(const struct dea_line_link *link, const struct dea_scpi_
 }
 
 /* Whether it says that its output is off, or need not. False: it does not answer. */
-static bool ask_off(struct dea_context *ctx, struct dea_line_link *link,
-                    const struct dea_scpi_raw *raw, double timeout_s, bool *off)
+static bool query_off(struct dea_context *ctx, struct dea_line_link *link,
+                      const struct dea_scpi_raw *raw, double timeout_s, bool *off)
 {
   const char *answer;
   double value;
@@ -61,7 +61,7 @@ static bool ask_off(struct dea_context *ctx, struct dea_line_link *link,
   if (*off) {
     return true;
   }
-  if (dea_scpi_ask(ctx, link, timeout_s, raw->is_off.text, &answer) != DEA_OK || answer == NULL) {
+  if (dea_scpi_query(ctx, link, timeout_s, raw->is_off.text, &answer) != DEA_OK || answer == NULL) {
     return false;
   }
   *off = strcmp(answer, "OFF") == 0 || (dea_scpi_number(answer, 0, &value) && value == 0);
@@ -85,9 +85,9 @@ static bool read_back(struct dea_context *ctx, struct dea_line_link *link,
       zero->why = isnan(since_s) ? NULL : dea_zero_not_for_long;
       return true;
     }
-    if (dea_scpi_ask(ctx, link, wait_s, raw->measure.text, &answer) != DEA_OK || answer == NULL ||
+    if (dea_scpi_query(ctx, link, wait_s, raw->measure.text, &answer) != DEA_OK || answer == NULL ||
         !dea_scpi_measured(raw, protocol, answer, &volts) ||
-        !ask_off(ctx, link, raw, wait_s, &off)) {
+        !query_off(ctx, link, raw, wait_s, &off)) {
       return false;
     }
     zero->volts = volts;
@@ -108,7 +108,7 @@ static bool is_same(struct dea_context *ctx, struct dea_line_link *link, struct 
                     double timeout_s)
 {
   const char *answer;
-  if (dea_scpi_ask(ctx, link, timeout_s, "*IDN?", &answer) != DEA_OK || answer == NULL) {
+  if (dea_scpi_query(ctx, link, timeout_s, "*IDN?", &answer) != DEA_OK || answer == NULL) {
     return false;
   }
   bool same = dea_scpi_is_same(m->raw, m->mark, answer);
@@ -130,7 +130,7 @@ static bool find_out(struct dea_context *ctx, struct dea_line_link *link, struct
   const struct dea_scpi_raw *raw = m->raw;
   const char *answer;
   double wait_s = share * (until_s - dea_clock_s());
-  if (!(wait_s > 0) || dea_scpi_ask(ctx, link, wait_s, raw->confirm.text, &answer) != DEA_OK ||
+  if (!(wait_s > 0) || dea_scpi_query(ctx, link, wait_s, raw->confirm.text, &answer) != DEA_OK ||
       answer == NULL || !dea_scpi_confirms(raw, answer) ||
       (anew && !is_same(ctx, link, m, share * (until_s - dea_clock_s())))) {
     return false;

@@ -34,7 +34,7 @@ static double or_zero(double value)
 }
 
 /* The model's answer becomes the state. */
-static void take_point(struct dea_sim_bench *b, const struct dea_bench_point *at, double length_s)
+static void store_point(struct dea_sim_bench *b, const struct dea_bench_point *at, double length_s)
 {
   double charge_C = 0.5 * (at->point.charge_C + b->point.charge_C);
   b->charge_C += at->point.charge_C - b->point.charge_C;
@@ -50,7 +50,7 @@ static dea_status try_step(struct dea_sim_bench *b, double length_s, double sour
   *good = status == DEA_OK && (length_s == 0 || error <= tolerance);
   if (*good) {
     b->type->accept(b->model);
-    take_point(b, &at, length_s);
+    store_point(b, &at, length_s);
     factor = 0.9 * cbrt(tolerance / fmax(error, 1e-30));
     b->next_s = length_s > 0 ? fmax(b->next_s, length_s) * fmin(fmax(factor, 0.3), 3) : b->next_s;
     return DEA_OK;

@@ -110,10 +110,9 @@ static double due(const struct dea_timed_output *o)
   return o->clock_s + (double)o->played / o->rate_Hz;
 }
 
-dea_status dea_timed_put(struct dea_context *ctx, struct dea_timed_output *o, const double *volts,
-                         size_t count,
-                         dea_status (*serve)(struct dea_context *ctx, void *supply, double until_s),
-                         void *supply)
+dea_status dea_timed_write(
+    struct dea_context *ctx, struct dea_timed_output *o, const double *volts, size_t count,
+    dea_status (*serve)(struct dea_context *ctx, void *supply, double until_s), void *supply)
 {
   for (size_t i = 0; i < count; i++) {
     while (o->count == o->capacity) {
@@ -141,7 +140,7 @@ static dea_status check_stall(struct dea_context *ctx, struct dea_timed_output *
                         away_s, o->queue_s);
 }
 
-dea_status dea_timed_take(struct dea_context *ctx, struct dea_timed_output *o, double now_s)
+dea_status dea_timed_read(struct dea_context *ctx, struct dea_timed_output *o, double now_s)
 {
   DEA_TRY(ctx, check_stall(ctx, o, now_s));
   while (o->count > 0 && due(o) <= now_s) {

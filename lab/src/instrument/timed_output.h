@@ -52,13 +52,12 @@ void dea_timed_start(struct dea_timed_output *output, double now_s);
 bool dea_timed_plays(const struct dea_timed_output *output);
 /* Adds samples to the queue; while it is full, serve(ctx, supply, until_s) plays until the next of
  * them is due, or less long. More than it holds before the start is DEA_E_ARGUMENT. */
-dea_status dea_timed_put(struct dea_context *ctx, struct dea_timed_output *output,
-                         const double *volts, size_t count,
-                         dea_status (*serve)(struct dea_context *ctx, void *supply, double until_s),
-                         void *supply);
+dea_status dea_timed_write(
+    struct dea_context *ctx, struct dea_timed_output *output, const double *volts, size_t count,
+    dea_status (*serve)(struct dea_context *ctx, void *supply, double until_s), void *supply);
 /* Takes what is due out of the queue. DEA_E_INTERLOCK when the computer was away for longer than
  * the queue: neither a loop that is late, nor a jump to where the waveform has got to meanwhile. */
-dea_status dea_timed_take(struct dea_context *ctx, struct dea_timed_output *output, double now_s);
+dea_status dea_timed_read(struct dea_context *ctx, struct dea_timed_output *output, double now_s);
 /* What to do after that. late_s: from when on the open question is late; NAN: none is open.
  * *next_s: when there will be something to do. */
 enum dea_timed_action dea_timed_next(struct dea_timed_output *output, double now_s, double late_s,

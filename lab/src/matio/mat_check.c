@@ -58,7 +58,7 @@ static bool feed(struct source *source)
 }
 
 /* Takes n bytes; false when there are less. */
-static bool take_bytes(struct source *source, unsigned char *out, size_t n)
+static bool read_bytes(struct source *source, unsigned char *out, size_t n)
 {
   if (!source->zipped) {
     if (n > source->left || fread(out, 1, n, source->stream) != n) {
@@ -94,7 +94,7 @@ static bool skip(struct source *source, uint64_t n)
   }
   while (n > 0) {
     size_t now = n < CHUNK ? (size_t)n : CHUNK;
-    if (!take_bytes(source, scratch, now)) {
+    if (!read_bytes(source, scratch, now)) {
       return false;
     }
     n -= now;
@@ -109,10 +109,10 @@ struct tag {
   unsigned char data[4];
 };
 
-static bool take_tag(struct source *source, uint64_t *capacity, struct tag *tag)
+static bool read_tag(struct source *source, uint64_t *capacity, struct tag *tag)
 {
   unsigned char bytes[TAG_SIZE];
-  if (*capacity < TAG_SIZE || !take_bytes(source, bytes, TAG_SIZE)) {
+  if (*capacity < TAG_SIZE || !read_bytes(source, bytes, TAG_SIZE)) {
     return false;
   }
   *capacity -= TAG_SIZE;
@@ -133,7 +133,7 @@ static bool take_tag(struct source *source, uint64_t *capacity, struct tag *tag)
 }
 
 /* The data of an element that was begun, at most `size` bytes. */
-static bool take_data(struct source *source, uint64_t *capacity, const struct tag *tag,
+static bool read_data(struct source *source, uint64_t *capacity, const struct tag *tag,
                       unsigned char *out, size_t size)
 {
   if (tag->padded == 0) {
@@ -141,7 +141,7 @@ static bool take_data(struct source *source, uint64_t *capacity, const struct ta
     return true;
   }
   if (tag->padded > size || tag->padded > *capacity ||
-      !take_bytes(source, out, (size_t)tag->padded)) {
+      !read_bytes(source, out, (size_t)tag->padded)) {
     return false;
   }
   *capacity -= tag->padded;
@@ -158,16 +158,16 @@ static bool skip_data(struct source *source, uint64_t *capacity, const struct ta
 }
 
 /* Number of fields of a struct, whose names are skipped. */
-static bool take_fields(struct source *source, uint64_t *capacity, uint64_t *count)
+static bool read_fields(struct source *source, uint64_t *capacity, uint64_t *count)
 {
   unsigned char data[8];
   struct tag tag;
-  if (!take_tag(source, capacity, &tag) || tag.type != TYPE_INT32 || tag.length != 4 ||
-      !take_data(source, capacity, &tag, data, sizeof data)) {
+  if (!read_tag(source, capacity, &tag) || tag.type != TYPE_INT32 || tag.length != 4 ||
+      !read_data(source, capacity, &tag, data, sizeof data)) {
     return false;
   }
   uint32_t each = integer(data, source->big);
-  if (!take_tag(source, capacity, &tag) || tag.type != TYPE_INT8 ||
+  if (!read_tag(source, capacity, &tag) || tag.type != TYPE_INT8 ||
       !skip_data(source, capacity, &tag)) {
     return false;
   }
@@ -182,7 +182,7 @@ static bool skip_numbers(struct source *source, uint64_t capacity, unsigned leas
   struct tag tag;
   unsigned found = 0;
   while (capacity >= TAG_SIZE) {
-    if (!take_tag(source, &capacity, &tag) || !skip_data(source, &capacity, &tag)) {
+    if (!read_tag(source, &capacity, &tag) || !skip_data(source, &capacity, &tag)) {
       return false;
     }
     found++;
@@ -199,16 +199,16 @@ static bool check_matrix(struct source *source, uint64_t length, int depth)
   if (length == 0) {
     return true;
   }
-  if (depth > DEPTH_MAX || !take_tag(source, &capacity, &tag) || tag.type != TYPE_UINT32 ||
-      tag.length != 8 || !take_data(source, &capacity, &tag, data, sizeof data)) {
+  if (depth > DEPTH_MAX || !read_tag(source, &capacity, &tag) || tag.type != TYPE_UINT32 ||
+      tag.length != 8 || !read_data(source, &capacity, &tag, data, sizeof data)) {
     return false;
   }
   unsigned flags = integer(data, source->big), class = flags & 0xff;
   if (class == MAT_C_OPAQUE) { // has no dimensions, but libmatio would read some
-    return take_tag(source, &capacity, &tag) && tag.type == TYPE_INT8 && skip(source, capacity);
+    return read_tag(source, &capacity, &tag) && tag.type == TYPE_INT8 && skip(source, capacity);
   }
-  if (!take_tag(source, &capacity, &tag) || tag.type != TYPE_INT32 || tag.length < 8 ||
-      !take_data(source, &capacity, &tag, data, sizeof data)) {
+  if (!read_tag(source, &capacity, &tag) || tag.type != TYPE_INT32 || tag.length < 8 ||
+      !read_data(source, &capacity, &tag, data, sizeof data)) {
     return false;
   }
   for (uint32_t k = 0; k < tag.length / 4; k++) {
@@ -218,16 +218,16 @@ static bool check_matrix(struct source *source, uint64_t length, int depth)
     }
     count *= n;
   }
-  if (!take_tag(source, &capacity, &tag) || tag.type != TYPE_INT8 ||
+  if (!read_tag(source, &capacity, &tag) || tag.type != TYPE_INT8 ||
       !skip_data(source, &capacity, &tag)) {
     return false;
   }
   bool parts = class == MAT_C_CELL || class == MAT_C_STRUCT || class == MAT_C_FUNCTION;
   if (class == MAT_C_OBJECT) { // the name of its class
-    parts = take_tag(source, &capacity, &tag) && skip_data(source, &capacity, &tag);
+    parts = read_tag(source, &capacity, &tag) && skip_data(source, &capacity, &tag);
   }
   if ((class == MAT_C_STRUCT || class == MAT_C_OBJECT) &&
-      !take_fields(source, &capacity, &fields)) {
+      !read_fields(source, &capacity, &fields)) {
     return false;
   }
   if (!parts) {
@@ -239,7 +239,7 @@ static bool check_matrix(struct source *source, uint64_t length, int depth)
     return false;
   }
   for (uint64_t i = 0; i < count * fields; i++) {
-    if (!take_tag(source, &capacity, &tag) || tag.type != TYPE_MATRIX || tag.length > capacity ||
+    if (!read_tag(source, &capacity, &tag) || tag.type != TYPE_MATRIX || tag.length > capacity ||
         !check_matrix(source, tag.length, depth + 1)) {
       return false;
     }
@@ -256,7 +256,7 @@ static bool check_compressed(struct source *source)
   if (inflateInit(&source->z) != Z_OK) {
     return false;
   }
-  bool good = take_tag(source, &capacity, &tag) && tag.type == TYPE_MATRIX &&
+  bool good = read_tag(source, &capacity, &tag) && tag.type == TYPE_MATRIX &&
               tag.length <= capacity && check_matrix(source, tag.length, 0);
   inflateEnd(&source->z);
   return good;

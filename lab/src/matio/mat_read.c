@@ -92,7 +92,7 @@ static size_t element_count(const matvar_t *variable)
   return count;
 }
 
-static dea_status say(struct reader *reader, const char *name, const char *what)
+static dea_status warn(struct reader *reader, const char *name, const char *what)
 {
   const struct dea_location location = {.file = reader->file};
   return dea_finding_add(reader->ctx, DEA_NOTE, location, "'%.80s' %s", name, what);
@@ -123,12 +123,12 @@ static dea_status add_matrix(struct reader *reader, const matvar_t *variable, co
   char part[NAME_SIZE + 32];
   bool turned = columns > DEA_MAT_COLUMNS_MAX && rows <= DEA_MAT_COLUMNS_MAX;
   if (columns > DEA_MAT_COLUMNS_MAX && !turned) {
-    return say(reader, name, "is too large in both directions and is left out");
+    return warn(reader, name, "is too large in both directions and is left out");
   }
   if (turned) {
-    DEA_TRY(reader->ctx, say(reader, name,
-                             "has many more columns than rows: its rows are taken as "
-                             "columns"));
+    DEA_TRY(reader->ctx, warn(reader, name,
+                              "has many more columns than rows: its rows are taken as "
+                              "columns"));
   }
   for (size_t k = 0; k < (turned ? rows : columns); k++) {
     snprintf(part, sizeof part, "%s(%zu)", name, k + 1);
@@ -145,7 +145,7 @@ static dea_status add_numbers(struct reader *reader, const matvar_t *variable, c
     return DEA_OK;
   }
   if (variable->isComplex) {
-    return say(reader, name, "is complex and is left out; save real() and imag() of it");
+    return warn(reader, name, "is complex and is left out; save real() and imag() of it");
   }
   // what libmatio could not read of it is not there
   if (variable->data == NULL || count > variable->nbytes / size) {
@@ -162,7 +162,7 @@ static dea_status add_numbers(struct reader *reader, const matvar_t *variable, c
     return add_matrix(reader, variable, name);
   }
   return vector ? add_column(reader, variable, name, 0, 1, count)
-                : say(reader, name, "has more than two dimensions and is left out");
+                : warn(reader, name, "has more than two dimensions and is left out");
 }
 
 /* Text goes to the table's note. */
@@ -198,7 +198,7 @@ static dea_status add_struct(struct reader *reader, matvar_t *variable, const ch
     return DEA_OK;
   }
   if (elements > 1) {
-    DEA_TRY(reader->ctx, say(reader, name, "is an array of structs, of which the first is read"));
+    DEA_TRY(reader->ctx, warn(reader, name, "is an array of structs, of which the first is read"));
   }
   for (unsigned k = 0; k < count; k++) {
     matvar_t *field = Mat_VarGetStructFieldByIndex(variable, k, 0);
@@ -222,23 +222,23 @@ static dea_status add_variable(struct reader *reader, matvar_t *variable, const 
     return DEA_OK;
   case MAT_C_STRUCT:
     return depth < DEPTH_MAX ? add_struct(reader, variable, name, depth)
-                             : say(reader, name, "lies too deep and is left out");
+                             : warn(reader, name, "lies too deep and is left out");
   case MAT_C_CELL:
-    return say(reader, name, "is a cell array and is left out; save its parts as variables");
+    return warn(reader, name, "is a cell array and is left out; save its parts as variables");
   case MAT_C_SPARSE:
-    return say(reader, name, "is sparse and is left out; save full() of it");
+    return warn(reader, name, "is sparse and is left out; save full() of it");
   case MAT_C_EMPTY:
     return element_count(variable) == 0
                ? DEA_OK
-               : say(reader, name,
-                     "is an object (a table, a timetable, ...) that only MATLAB reads: "
-                     "save it with struct(), table2struct(), or as CSV with "
-                     "writetable() or writetimetable()");
+               : warn(reader, name,
+                      "is an object (a table, a timetable, ...) that only MATLAB reads: "
+                      "save it with struct(), table2struct(), or as CSV with "
+                      "writetable() or writetimetable()");
   default:
     reader->unread++;
-    return say(reader, name,
-               "is an object (a table, a timetable, ...) that only MATLAB reads: save it with "
-               "table2struct(), or as CSV with writetable() or writetimetable()");
+    return warn(reader, name,
+                "is an object (a table, a timetable, ...) that only MATLAB reads: save it with "
+                "table2struct(), or as CSV with writetable() or writetimetable()");
   }
 }
 

@@ -35,7 +35,7 @@ static const char *reason(int error)
 }
 
 /* UTF-16 of a text, which is what MATLAB itself writes; owned by the caller (dea_free). */
-static uint16_t *make_utf16(struct dea_context *ctx, const char *text, size_t *count)
+static uint16_t *build_utf16(struct dea_context *ctx, const char *text, size_t *count)
 {
   uint16_t *units = dea_alloc(ctx, strlen(text) + 1, sizeof *units);
   size_t n = 0;
@@ -57,7 +57,7 @@ static uint16_t *make_utf16(struct dea_context *ctx, const char *text, size_t *c
 static int write_text(struct dea_context *ctx, mat_t *mat, const char *name, const char *text)
 {
   size_t dims[2] = {1, 0};
-  uint16_t *units = make_utf16(ctx, text, &dims[1]);
+  uint16_t *units = build_utf16(ctx, text, &dims[1]);
   if (units == NULL) {
     return MATIO_E_OUT_OF_MEMORY;
   }

@@ -23,8 +23,8 @@ static const struct column others[] = {{"time (s)", "time_s"}, {"command (kV)", 
 enum { OTHERS = sizeof others / sizeof others[0] };
 
 /* Signs that would end a column or a text are left out. */
-static void make_title(const char *label, const char *number, const char *unit,
-                       char out[TITLE_SIZE])
+static void build_title(const char *label, const char *number, const char *unit,
+                        char out[TITLE_SIZE])
 {
   snprintf(out, TITLE_SIZE, "%.90s%s%s%s%.63s%s", label, number[0] != '\0' ? " " : "", number,
            unit[0] != '\0' ? " (" : "", unit, unit[0] != '\0' ? ")" : "");
@@ -58,8 +58,8 @@ static void add_part(const char *text, size_t most, char out[VARIABLE_SIZE])
 }
 
 /* The unit is at the end, whatever is cut off before it. */
-static void make_variable(const char *label, const char *number, const char *unit,
-                          char out[VARIABLE_SIZE])
+static void build_variable(const char *label, const char *number, const char *unit,
+                           char out[VARIABLE_SIZE])
 {
   static const size_t unit_most = 20;
   size_t most = VARIABLE_SIZE - 1, length = strlen(unit);
@@ -84,8 +84,8 @@ static void name_columns(const struct dea_protocol *protocol,
     snprintf(label, sizeof label, "%.63s%s%s", input->name.text, says ? "" : " ",
              says ? "" : meaning->name);
     for (int again = 2, unique = 0; !unique; again++) {
-      make_title(label, number, other ? input->unit.text : meaning->display_unit, out[i].title);
-      make_variable(label, number, other ? input->unit.text : meaning->si_unit, out[i].variable);
+      build_title(label, number, other ? input->unit.text : meaning->display_unit, out[i].title);
+      build_variable(label, number, other ? input->unit.text : meaning->si_unit, out[i].variable);
       unique = 1;
       for (size_t k = 0; k < i + OTHERS; k++) {
         const struct column *there = k < i ? &out[k] : &others[k - i];
@@ -389,7 +389,7 @@ dea_status dea_protocol_export(struct dea_context *ctx, const struct dea_protoco
     return dea_fail(ctx, DEA_E_ARGUMENT, "%s has no `channels`: there is nothing to be recorded",
                     protocol->file);
   }
-  DEA_TRY(ctx, dea_folder_make(ctx, directory));
+  DEA_TRY(ctx, dea_folder_create(ctx, directory));
   void *before = dea_c_locale_enter();
   dea_status status = sample(ctx, protocol, &wave);
   status = status == DEA_OK ? write_csv(ctx, &wave, directory) : status;

@@ -48,7 +48,7 @@ static dea_status read_scale(const struct dea_reader *reader,
                         : dea_schema_error(reader, text->location, "%s: %s", key, why);
 }
 
-static dea_status take_input(const struct dea_reader *reader, struct dea_protocol_input *input)
+static dea_status read_input(const struct dea_reader *reader, struct dea_protocol_input *input)
 {
   if (input->kind.value < 0) {
     return DEA_OK; // already an error
@@ -85,12 +85,12 @@ static dea_status take_input(const struct dea_reader *reader, struct dea_protoco
 }
 
 /* Names and terminals are unique. */
-static dea_status take_inputs(const struct dea_reader *reader, struct dea_protocol_raw *raw)
+static dea_status read_inputs(const struct dea_reader *reader, struct dea_protocol_raw *raw)
 {
   struct dea_protocol *protocol = &raw->protocol;
   for (size_t i = 0; i < protocol->input_count; i++) {
     struct dea_protocol_input *input = &raw->inputs[i];
-    DEA_TRY(reader->ctx, take_input(reader, input));
+    DEA_TRY(reader->ctx, read_input(reader, input));
     for (size_t k = 0; k < i; k++) {
       const struct dea_protocol_input *other = &raw->inputs[k];
       if (input->name.text[0] != '\0' && strcmp(input->name.text, other->name.text) == 0) {
@@ -134,7 +134,7 @@ static dea_status count_cycles(struct dea_context *ctx, struct dea_protocol_step
 }
 
 /* What every step begins at; longer than numbers can count is an error. */
-static dea_status take_clock(struct dea_context *ctx, struct dea_protocol_raw *raw)
+static dea_status read_clock(struct dea_context *ctx, struct dea_protocol_raw *raw)
 {
   static const double cycles_max = 1e9;
   double start_s = 0, cycles = 0;
@@ -154,7 +154,7 @@ static dea_status take_clock(struct dea_context *ctx, struct dea_protocol_raw *r
 }
 
 /* errors: their number before the file was read. */
-static dea_status take_sequence(const struct dea_reader *reader, struct dea_protocol_raw *raw,
+static dea_status read_sequence(const struct dea_reader *reader, struct dea_protocol_raw *raw,
                                 size_t errors)
 {
   struct dea_context *ctx = reader->ctx;
@@ -192,13 +192,13 @@ static dea_status take_sequence(const struct dea_reader *reader, struct dea_prot
     }
   }
   // A step may lack its waveform, or a number of it.
-  return dea_finding_count(ctx, DEA_ERROR) == errors ? take_clock(ctx, raw) : DEA_OK;
+  return dea_finding_count(ctx, DEA_ERROR) == errors ? read_clock(ctx, raw) : DEA_OK;
 }
 
 // Design, instruments ----------------------------------------------------------------------------
 
 /* The design that the file names: what is wrong in it stands at its own places. */
-static dea_status take_design(struct dea_context *ctx, const struct dea_bench_film_type *films,
+static dea_status read_design(struct dea_context *ctx, const struct dea_bench_film_type *films,
                               struct dea_protocol *protocol)
 {
   size_t length;
@@ -219,7 +219,7 @@ static dea_status take_design(struct dea_context *ctx, const struct dea_bench_fi
   return status == DEA_E_DESIGN ? DEA_OK : status; // counted with the others
 }
 
-static dea_status take_instruments(struct dea_context *ctx, struct dea_protocol *protocol)
+static dea_status read_instruments(struct dea_context *ctx, struct dea_protocol *protocol)
 {
   for (size_t i = 0; i < protocol->instrument_count; i++) {
     char path[48];
@@ -232,7 +232,7 @@ static dea_status take_instruments(struct dea_context *ctx, struct dea_protocol 
 }
 
 /* What has no default of its own. */
-static dea_status take_amplifier(struct dea_context *ctx, struct dea_protocol *protocol)
+static dea_status read_amplifier(struct dea_context *ctx, struct dea_protocol *protocol)
 {
   const struct dea_quantity *highest = &protocol->amplifier.highest_V;
   if (protocol->amplifier.lowest_V.origin == DEA_ABSENT && highest->origin != DEA_ABSENT) {
@@ -312,15 +312,15 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_bench_film_
     protocol->step_count = 0;
     protocol->specimen.highest_V = (struct dea_quantity){.si = NAN, .origin = DEA_ABSENT};
   } else if (root->kind == DEA_NODE_SECTION) {
-    DEA_TRY(ctx, take_sequence(&reader, raw, errors));
+    DEA_TRY(ctx, read_sequence(&reader, raw, errors));
   }
   if (root->kind == DEA_NODE_SECTION) {
-    DEA_TRY(ctx, take_inputs(&reader, raw));
-    DEA_TRY(ctx, take_amplifier(ctx, protocol));
-    DEA_TRY(ctx, take_instruments(ctx, protocol));
+    DEA_TRY(ctx, read_inputs(&reader, raw));
+    DEA_TRY(ctx, read_amplifier(ctx, protocol));
+    DEA_TRY(ctx, read_instruments(ctx, protocol));
   }
   if (root->kind == DEA_NODE_SECTION && films != NULL) {
-    DEA_TRY(ctx, take_design(ctx, films, protocol));
+    DEA_TRY(ctx, read_design(ctx, films, protocol));
     DEA_TRY(ctx,
             dea_specimen_read(ctx, protocol->file, &protocol->specimen_file, &protocol->specimen));
   }

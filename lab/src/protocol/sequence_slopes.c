@@ -30,8 +30,7 @@ static void add_cycle(struct dea_protocol_slopes *out, size_t step, double cycle
 }
 
 /* Of straight pieces: every cycle of a block is like the first one. */
-static void look_at_pieces(struct dea_protocol_slopes *out, size_t step,
-                           const struct dea_waveform *w)
+static void check_pieces(struct dea_protocol_slopes *out, size_t step, const struct dea_waveform *w)
 {
   const struct dea_wave_knot *before = NULL;
   for (size_t i = 0; i < w->block_count; i++) {
@@ -72,7 +71,7 @@ void dea_protocol_slopes_find(const struct dea_protocol *protocol, struct dea_pr
     if (w->type->value != NULL) {
       add_cycle(out, i, 20 * w->longest_step_s);
     } else {
-      look_at_pieces(out, i, w);
+      check_pieces(out, i, w);
     }
     before_V = end_V;
     if (step->pause_s.si > 0 || i + 1 == protocol->step_count) {

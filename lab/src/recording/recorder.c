@@ -112,61 +112,61 @@ static size_t frame_rows(size_t points)
   return points < 65536 ? 65536 / points : 1;
 }
 
-static void make_channel(struct h5 *h, hid_t channels, size_t index,
-                         const struct dea_recorder_channel *channel, char *key)
+static void create_channel(struct h5 *h, hid_t channels, size_t index,
+                           const struct dea_recorder_channel *channel, char *key)
 {
   const struct dea_channel_meaning *meaning = &dea_channel_meanings[channel->kind];
   const char *unit = channel->unit != NULL ? channel->unit : meaning->si_unit;
   group_name(h, channels, channel->name, key);
-  hid_t group = dea_h5_group_make(h, channels, key);
-  dea_h5_put_text(h, group, "name", channel->name);
-  dea_h5_put_text(h, group, "quantity", meaning->name);
-  dea_h5_put_text(h, group, "unit", unit);
-  dea_h5_put_int(h, group, "index", (long long)index);
-  dea_h5_put_real(h, group, "start_s", channel->start_s);
-  dea_h5_put_real(h, group, "interval_s", channel->interval_s);
-  dea_h5_put_real(h, group, "filter_Hz", channel->filter_Hz);
+  hid_t group = dea_h5_group_create(h, channels, key);
+  dea_h5_write_text(h, group, "name", channel->name);
+  dea_h5_write_text(h, group, "quantity", meaning->name);
+  dea_h5_write_text(h, group, "unit", unit);
+  dea_h5_write_int(h, group, "index", (long long)index);
+  dea_h5_write_real(h, group, "start_s", channel->start_s);
+  dea_h5_write_real(h, group, "interval_s", channel->interval_s);
+  dea_h5_write_real(h, group, "filter_Hz", channel->filter_Hz);
   if (channel->lowest < channel->highest) {
-    dea_h5_put_real(h, group, "lowest", channel->lowest);
-    dea_h5_put_real(h, group, "highest", channel->highest);
+    dea_h5_write_real(h, group, "lowest", channel->lowest);
+    dea_h5_write_real(h, group, "highest", channel->highest);
   }
   size_t rows = chunk_rows(channel->interval_s);
-  dea_series_make(h, group, "values", 1, rows, unit, meaning->meaning);
+  dea_series_create(h, group, "values", 1, rows, unit, meaning->meaning);
   if (channel->interval_s == 0) {
-    dea_series_make(h, group, "time", 1, rows, "s", "time of each value");
+    dea_series_create(h, group, "time", 1, rows, "s", "time of each value");
   }
   dea_h5_close(group);
 }
 
-static void make_profiles(struct h5 *h, hid_t file, const struct dea_recorder_options *options)
+static void build_profiles(struct h5 *h, hid_t file, const struct dea_recorder_options *options)
 {
   size_t points = options->profile_points;
   if (points == 0) {
     return;
   }
-  hid_t group = dea_h5_group_make(h, file, "profiles");
-  dea_h5_put_array(h, group, "x_m", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, points, options->x_m, "m",
-                   "positions along the line");
-  dea_series_make(h, group, "time_s", 1, 1024, "s", "time of each frame");
-  dea_series_make(h, group, "z_m", points, frame_rows(points), "m",
-                  "height at each position, a row a frame; NAN: no valid point");
+  hid_t group = dea_h5_group_create(h, file, "profiles");
+  dea_h5_write_array(h, group, "x_m", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, points, options->x_m, "m",
+                     "positions along the line");
+  dea_series_create(h, group, "time_s", 1, 1024, "s", "time of each frame");
+  dea_series_create(h, group, "z_m", points, frame_rows(points), "m",
+                    "height at each position, a row a frame; NAN: no valid point");
   dea_h5_close(group);
 }
 
-static void make_texts(struct h5 *h, hid_t file, const struct dea_recorder_options *options)
+static void build_texts(struct h5 *h, hid_t file, const struct dea_recorder_options *options)
 {
-  dea_h5_put_text(h, file, "format", DEA_RECORDING_FORMAT);
-  dea_h5_put_int(h, file, "version", DEA_RECORDING_VERSION);
-  dea_h5_put_long_text(h, file, "title", options->title);
-  dea_h5_put_long_text(h, file, "protocol", options->protocol);
-  dea_h5_put_long_text(h, file, "design", options->design);
-  dea_h5_put_long_text(h, file, "design_name", options->design_name);
-  dea_h5_put_long_text(h, file, "provenance", options->provenance);
+  dea_h5_write_text(h, file, "format", DEA_RECORDING_FORMAT);
+  dea_h5_write_int(h, file, "version", DEA_RECORDING_VERSION);
+  dea_h5_write_long_text(h, file, "title", options->title);
+  dea_h5_write_long_text(h, file, "protocol", options->protocol);
+  dea_h5_write_long_text(h, file, "design", options->design);
+  dea_h5_write_long_text(h, file, "design_name", options->design_name);
+  dea_h5_write_long_text(h, file, "provenance", options->provenance);
   char state[DEA_STATE_SIZE];
   memset(state, ' ', sizeof state);
   state[sizeof state - 1] = '\0'; // as long as what comes to stand there
-  dea_h5_put_long_text(h, file, "state", state);
-  dea_h5_put_long_text(h, file, "output", state);
+  dea_h5_write_long_text(h, file, "state", state);
+  dea_h5_write_long_text(h, file, "output", state);
 }
 
 /* Overwrites a text of a fixed size. */
@@ -198,7 +198,7 @@ static void check_disk(struct h5 *h, const struct dea_recorder *recorder)
   }
 }
 
-static hid_t make_file(struct h5 *h, bool plain, struct dea_disk *disk)
+static hid_t create_file(struct h5 *h, bool plain, struct dea_disk *disk)
 {
   hid_t access = H5Pcreate(H5P_FILE_ACCESS), creation = H5Pcreate(H5P_FILE_CREATE);
   if (!plain) {
@@ -237,22 +237,22 @@ static void open_channel(struct h5 *h, hid_t channels, const char *key, double i
 }
 
 /* Makes all objects first: once the file has readers, no more can be added. */
-static void make_objects(struct h5 *h, struct dea_recorder *recorder,
-                         const struct dea_recorder_options *options)
+static void create_objects(struct h5 *h, struct dea_recorder *recorder,
+                           const struct dea_recorder_options *options)
 {
   char keys[DEA_CHANNELS_MAX][GROUP_NAME_SIZE];
   hid_t file = recorder->file;
-  make_texts(h, file, options);
-  hid_t channels = dea_h5_group_make(h, file, "channels");
+  build_texts(h, file, options);
+  hid_t channels = dea_h5_group_create(h, file, "channels");
   for (size_t c = 0; c < options->channel_count && h->status == DEA_OK; c++) {
-    make_channel(h, channels, c, &options->channels[c], keys[c]);
+    create_channel(h, channels, c, &options->channels[c], keys[c]);
   }
   dea_h5_close(channels);
-  make_profiles(h, file, options);
-  dea_series_make(h, file, "cycles", DEA_CYCLE_WIDTH, 1024, "1",
-                  "completed cycles: step, number in it, start (s), end (s), level (V)");
-  dea_series_make(h, file, "events", DEA_NOTICED_WIDTH, 64, "1",
-                  "what the watches noticed: time (s), kind, channel, value, limit");
+  build_profiles(h, file, options);
+  dea_series_create(h, file, "cycles", DEA_CYCLE_WIDTH, 1024, "1",
+                    "completed cycles: step, number in it, start (s), end (s), level (V)");
+  dea_series_create(h, file, "events", DEA_NOTICED_WIDTH, 64, "1",
+                    "what the watches noticed: time (s), kind, channel, value, limit");
   set_text(h, recorder, "state", DEA_STATE_RUNNING);
   set_text(h, recorder, "output", "");
   if (h->status == DEA_OK && H5Fflush(file, H5F_SCOPE_GLOBAL) < 0) {
@@ -320,9 +320,9 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
   DEA_TRY_MEMORY(recorder->path != NULL);
   struct h5 h;
   dea_h5_begin(&h, ctx, recorder->path);
-  recorder->file = make_file(&h, options->plain, &recorder->disk);
+  recorder->file = create_file(&h, options->plain, &recorder->disk);
   if (h.status == DEA_OK) {
-    make_objects(&h, recorder, options);
+    create_objects(&h, recorder, options);
   }
   check_disk(&h, recorder);
   dea_h5_end(&h);

@@ -202,18 +202,18 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_recordi
 }
 
 /* Takes tables of an earlier recording out of the way, or refuses. */
-static dea_status make_way(struct dea_context *ctx, const char *folder, bool force)
+static dea_status create_folders(struct dea_context *ctx, const char *folder, bool force)
 {
   static const char *const names[] = {"channels.csv", "profiles.csv", "cycles.csv"};
   static const char *const numbered[] = {"channels", "readings"};
   char name[64];
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-    DEA_TRY(ctx, dea_path_make_way(ctx, folder, names[i], force));
+    DEA_TRY(ctx, dea_path_create_folders(ctx, folder, names[i], force));
   }
   for (size_t n = 1; n <= DEA_CHANNELS_MAX; n++) {
     for (size_t i = 0; i < sizeof numbered / sizeof numbered[0]; i++) {
       snprintf(name, sizeof name, "%s_%zu.csv", numbered[i], n);
-      DEA_TRY(ctx, dea_path_make_way(ctx, folder, name, force));
+      DEA_TRY(ctx, dea_path_create_folders(ctx, folder, name, force));
     }
   }
   return DEA_OK;
@@ -223,8 +223,8 @@ dea_status dea_recording_write_tables(struct dea_context *ctx,
                                       const struct dea_recording *recording, const char *folder,
                                       bool force)
 {
-  DEA_TRY(ctx, make_way(ctx, folder, force));
-  DEA_TRY(ctx, dea_folder_make(ctx, folder));
+  DEA_TRY(ctx, create_folders(ctx, folder, force));
+  DEA_TRY(ctx, dea_folder_create(ctx, folder));
   void *before = dea_c_locale_enter();
   dea_status status = write_channels(ctx, recording, folder);
   if (status == DEA_OK && recording->profiles.count > 0) {

@@ -93,7 +93,7 @@ static void shift(double *time_s, size_t count, double by_s)
 }
 
 /* Takes what the first one lacks. */
-static void take_text(char **own, char **other)
+static void move_text(char **own, char **other)
 {
   if (*own == NULL || (*own)[0] == '\0') {
     char *kept = *own;
@@ -109,8 +109,8 @@ static dea_status join_provenance(struct dea_context *ctx, struct dea_recording 
   json_t *json = recording->provenance != NULL ? json_loads(recording->provenance, 0, NULL) : NULL;
   json_t *own = other->provenance != NULL ? json_loads(other->provenance, 0, NULL) : NULL;
   json_t *part = json_object();
-  dea_json_put_text(part, "file", other->file);
-  dea_json_put(part, "after_s", after_s);
+  dea_json_add_text(part, "file", other->file);
+  dea_json_add(part, "after_s", after_s);
   json_object_set_new(part, "provenance", own != NULL ? own : json_null());
   if (!json_is_object(json)) {
     json_decref(json);
@@ -167,7 +167,7 @@ static void move_channels(struct dea_recording *recording, struct dea_recording 
 }
 
 /* Exchanges what both have room for, so that each is freed with one of them. */
-static void take_profiles(struct dea_recording *recording, struct dea_recording *other,
+static void move_profiles(struct dea_recording *recording, struct dea_recording *other,
                           double after_s)
 {
   if (other->profiles.count > 0) {
@@ -178,7 +178,7 @@ static void take_profiles(struct dea_recording *recording, struct dea_recording 
   }
 }
 
-static void take_cycles(struct dea_recording *recording, struct dea_recording *other,
+static void move_cycles(struct dea_recording *recording, struct dea_recording *other,
                         double after_s)
 {
   if (other->cycle_count > 0) {
@@ -259,13 +259,13 @@ dea_status dea_recording_join(struct dea_context *ctx, struct dea_recording *rec
   DEA_TRY(ctx, join_provenance(ctx, recording, other, after_s));
   DEA_TRY(ctx, join_events(ctx, recording, other, after_s));
   move_channels(recording, other, after_s);
-  take_profiles(recording, other, after_s);
-  take_cycles(recording, other, after_s);
-  take_text(&recording->title, &other->title);
-  take_text(&recording->protocol, &other->protocol);
+  move_profiles(recording, other, after_s);
+  move_cycles(recording, other, after_s);
+  move_text(&recording->title, &other->title);
+  move_text(&recording->protocol, &other->protocol);
   if (recording->design == NULL) {
-    take_text(&recording->design, &other->design);
-    take_text(&recording->design_name, &other->design_name);
+    move_text(&recording->design, &other->design);
+    move_text(&recording->design_name, &other->design_name);
   }
   if (recording->complete && !other->complete) {
     recording->complete = false;

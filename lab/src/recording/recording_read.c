@@ -17,7 +17,7 @@ static void wrong(struct h5 *h, const char *what)
 }
 
 /* What is not as it should be is told once, in `ended`. */
-static void say_ended(struct dea_recording *recording, const char *why)
+static void report_ended(struct dea_recording *recording, const char *why)
 {
   recording->complete = false;
   if (recording->ended[0] == '\0') {
@@ -39,10 +39,10 @@ static bool get_state(struct h5 *h, hid_t file, struct dea_recording *recording)
     recording->complete = true;
     ended = true;
   } else if (strncmp(state, DEA_STATE_ENDED, prefix) == 0) {
-    say_ended(recording, state + prefix);
+    report_ended(recording, state + prefix);
     ended = true;
   } else {
-    say_ended(recording, "its program was killed, or is still recording");
+    report_ended(recording, "its program was killed, or is still recording");
   }
   dea_free(h->ctx, state);
   return ended;
@@ -284,7 +284,7 @@ static void drop_cycles(struct dea_recording *recording)
     n++;
   }
   if (n < recording->cycle_count) {
-    say_ended(recording, "its last cycles have no samples");
+    report_ended(recording, "its last cycles have no samples");
   }
   recording->cycle_count = n;
 }
@@ -322,7 +322,7 @@ static void get_all(struct h5 *h, hid_t file, struct dea_recording *recording)
     return;
   }
   if (cut) {
-    say_ended(recording, "the file is damaged: samples are missing at the end");
+    report_ended(recording, "the file is damaged: samples are missing at the end");
   }
   if (!ended || cut) {
     level_channels(recording);

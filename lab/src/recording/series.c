@@ -6,8 +6,8 @@ static const char cannot_write[] = "cannot write";
 
 // Writing ----------------------------------------------------------------------------------------
 
-void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
-                     const char *unit, const char *meaning)
+void dea_series_create(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
+                       const char *unit, const char *meaning)
 {
   if (h->status != DEA_OK) {
     return;
@@ -23,8 +23,8 @@ void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, 
   if (set < 0) {
     dea_h5_fail(h, cannot_write);
   }
-  dea_h5_put_text(h, set, "unit", unit);
-  dea_h5_put_text(h, set, "meaning", meaning);
+  dea_h5_write_text(h, set, "unit", unit);
+  dea_h5_write_text(h, set, "meaning", meaning);
   dea_h5_close(set);
   dea_h5_close(properties);
   dea_h5_close(space);

@@ -17,8 +17,8 @@ struct dea_recorded_series {
 };
 
 /* Makes an empty dataset of rows of `width` numbers: one-dimensional for 1. */
-void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
-                     const char *unit, const char *meaning);
+void dea_series_create(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
+                       const char *unit, const char *meaning);
 /* Opens it for writing. series: to be closed by the caller, also after a failure. */
 void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
                      struct dea_recorded_series *series);

@@ -230,7 +230,7 @@ static int by_time(const void *a, const void *b)
   return (x->active.begin_s > y->active.begin_s) - (x->active.begin_s < y->active.begin_s);
 }
 
-static dea_status take_list(const struct finder *f, const struct dea_recording *recording)
+static dea_status read_list(const struct finder *f, const struct dea_recording *recording)
 {
   bool *used = dea_alloc(f->ctx, recording->cycle_count, sizeof *used);
   DEA_TRY_MEMORY(used != NULL);
@@ -265,7 +265,7 @@ dea_status dea_cycles_find(struct dea_context *ctx, const struct dea_recording *
   }
   dea_free(ctx, runs.list);
   if (status == DEA_OK && recording->cycle_count > 0 && voltage->count > 0) {
-    status = take_list(&f, recording);
+    status = read_list(&f, recording);
   }
   if (status != DEA_OK) {
     dea_free(ctx, out->parts);

@@ -123,7 +123,7 @@ static double settled_current(struct search *s, const struct dea_plateau *p)
 }
 
 /* Takes the leakage off samples begin <= i < end: a running median over an eighth of them. */
-static void take_base_off(struct search *s, size_t begin, size_t end)
+static void subtract_base(struct search *s, size_t begin, size_t end)
 {
   double medians[BASE_BLOCKS + 1], base[BASE_BLOCKS + 1];
   size_t n = end - begin, block = 1 + n / BASE_BLOCKS, m = n / block;
@@ -213,11 +213,11 @@ static void set_residual(struct search *s, size_t blind)
   for (size_t p = 0; p < s->plateau_count; p++) {
     size_t begin = s->plateaus[p].begin + (p > 0 ? blind : 0), end = s->plateaus[p].end;
     if (begin + 1 < end) {
-      take_base_off(s, begin, end - 1); // the next corner may lie between two samples
+      subtract_base(s, begin, end - 1); // the next corner may lie between two samples
     }
   }
   if (s->plateau_count == 0 && n > 0) {
-    take_base_off(s, 0, n);
+    subtract_base(s, 0, n);
   }
 }
 

@@ -85,7 +85,7 @@ struct dea_window dea_window_mean(const struct dea_channel *series, struct dea_s
 // Blocks -----------------------------------------------------------------------------------------
 
 /* Takes the straight line off values at 0, 1, ... (NAN stays out); numbers there are. */
-static size_t take_line_off(double *values, size_t count)
+static size_t subtract_line(double *values, size_t count)
 {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (size_t i = 0; i < count; i++) {
@@ -273,10 +273,10 @@ dea_status dea_noise_estimate(struct dea_context *ctx, const struct dea_channel 
     double blocks[DEA_NOISE_BLOCKS];
     size_t n = copy_span(series, spans[w], out->limit, scratch);
     size_t m = blocks_of(scratch, n, out->block, blocks);
-    if (m > 2 && take_line_off(blocks, m) > 2) {
+    if (m > 2 && subtract_line(blocks, m) > 2) {
       add_window(&sums, blocks, m);
     }
-    size_t numbers = take_line_off(scratch, n);
+    size_t numbers = subtract_line(scratch, n);
     for (size_t i = 0; i < n && numbers > 2; i++) {
       squares += isnan(scratch[i]) ? 0.0 : scratch[i] * scratch[i];
     }

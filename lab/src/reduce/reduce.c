@@ -294,8 +294,8 @@ static bool is_clipped(const struct dea_channel *series, double end, double rang
 
 /* Samples of a series (a copy) at the end of their sensor's range become NAN: what is beyond was
  * not measured. Only where the range is not known (saturation.c). scratch: [count]. */
-static dea_status take_clipped_out(struct dea_context *ctx, struct dea_channel *series,
-                                   double *scratch)
+static dea_status remove_clipped(struct dea_context *ctx, struct dea_channel *series,
+                                 double *scratch)
 {
   double ends[2] = {INFINITY, -INFINITY};
   if (series->lowest < series->highest) {
@@ -343,7 +343,7 @@ static dea_status reduce_channels(struct job *job, const struct dea_reduce_optio
     DEA_TRY(job->ctx, copy_channel(job->ctx, channel, series));
     double *scratch = dea_alloc(job->ctx, channel->count, 2 * sizeof *scratch);
     DEA_TRY_MEMORY(scratch != NULL);
-    dea_status status = take_clipped_out(job->ctx, series, scratch);
+    dea_status status = remove_clipped(job->ctx, series, scratch);
     dea_filter_apply(series, series->filter_Hz, series->values);
     if (status == DEA_OK && taken[k].kind == DEA_REDUCED_FORCE) {
       status = reduce_force(job, options->force_offset_N, scratch);
@@ -519,7 +519,7 @@ static dea_status reduce_current(struct job *job)
 
 // The whole --------------------------------------------------------------------------------------
 
-static void take_options(const struct dea_reduce_options *options, struct dea_reduction *out)
+static void read_options(const struct dea_reduce_options *options, struct dea_reduction *out)
 {
   out->levelling = (struct dea_levelling){.centre_m = NAN,
                                           .tilt_rad = NAN,
@@ -607,7 +607,7 @@ dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recor
   }
   job.out = dea_alloc(ctx, 1, sizeof *job.out);
   DEA_TRY_MEMORY(job.out != NULL);
-  take_options(options, job.out);
+  read_options(options, job.out);
   dea_status status = reduce(&job, options);
   dea_free(ctx, job.list.parts);
   dea_free(ctx, job.offsets);

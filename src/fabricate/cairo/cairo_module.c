@@ -22,7 +22,7 @@ struct dea_canvas {
   struct dea_bytes bytes;
 };
 
-static cairo_status_t take(void *user, const unsigned char *data, unsigned length)
+static cairo_status_t append_bytes(void *user, const unsigned char *data, unsigned length)
 {
   struct dea_bytes *bytes = user;
   dea_bytes_add(bytes, data, length);
@@ -33,7 +33,7 @@ enum { WORDS_SIZE = 1024 };
 
 /* Words as cairo takes them: it stops at what is not UTF-8, such as a name of a file in another
  * encoding or one that was cut inside of a letter. What is too long ends early. */
-static void make_good(const char *words, char out[WORDS_SIZE])
+static void clean_text(const char *words, char out[WORDS_SIZE])
 {
   size_t n = 0;
   while (n + 4 < WORDS_SIZE) {
@@ -62,15 +62,15 @@ static void set_frame(struct dea_canvas *canvas, double height_mm)
   cairo_set_fill_rule(canvas->cr, CAIRO_FILL_RULE_EVEN_ODD);
 }
 
-static cairo_surface_t *make_surface(struct dea_canvas *canvas, double width_mm, double height_mm,
-                                     const char *title)
+static cairo_surface_t *build_surface(struct dea_canvas *canvas, double width_mm, double height_mm,
+                                      const char *title)
 {
   cairo_surface_t *surface;
   char good[WORDS_SIZE];
-  make_good(title, good);
+  clean_text(title, good);
   switch (canvas->format) {
   case DEA_CANVAS_PDF:
-    surface = cairo_pdf_surface_create_for_stream(take, &canvas->bytes, width_mm / point_mm,
+    surface = cairo_pdf_surface_create_for_stream(append_bytes, &canvas->bytes, width_mm / point_mm,
                                                   height_mm / point_mm);
     if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
       cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, good);
@@ -80,7 +80,7 @@ static cairo_surface_t *make_surface(struct dea_canvas *canvas, double width_mm,
     }
     return surface;
   case DEA_CANVAS_SVG:
-    surface = cairo_svg_surface_create_for_stream(take, &canvas->bytes, width_mm / point_mm,
+    surface = cairo_svg_surface_create_for_stream(append_bytes, &canvas->bytes, width_mm / point_mm,
                                                   height_mm / point_mm);
     return surface;
   case DEA_CANVAS_PNG:
@@ -115,7 +115,7 @@ static dea_status create(struct dea_context *ctx, enum dea_canvas_format format,
   *out = NULL;
   DEA_TRY_MEMORY(canvas != NULL);
   *canvas = (struct dea_canvas){.ctx = ctx, .format = format, .bytes = {.ctx = ctx}};
-  canvas->surface = make_surface(canvas, width_mm, height_mm, title);
+  canvas->surface = build_surface(canvas, width_mm, height_mm, title);
   canvas->cr = cairo_create(canvas->surface);
   cairo_status_t status = cairo_status(canvas->cr);
   if (status != CAIRO_STATUS_SUCCESS) {
@@ -219,7 +219,7 @@ static double text_width(struct dea_canvas *canvas, double size_mm, bool bold, c
 {
   cairo_text_extents_t extents;
   char good[WORDS_SIZE];
-  make_good(text, good);
+  clean_text(text, good);
   choose_font(canvas, size_mm, bold);
   cairo_text_extents(canvas->cr, good, &extents);
   return extents.x_advance;
@@ -229,7 +229,7 @@ static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double siz
                  enum dea_align align, bool bold, unsigned colour, const char *words)
 {
   char good[WORDS_SIZE];
-  make_good(words, good);
+  clean_text(words, good);
   double width = align == DEA_ALIGN_LEFT ? 0 : text_width(canvas, size_mm, bold, words);
   cairo_save(canvas->cr);
   cairo_translate(canvas->cr, x_mm, y_mm);
@@ -247,7 +247,7 @@ static dea_status finish(struct dea_canvas *canvas, const char **bytes, size_t *
 {
   cairo_status_t status = cairo_status(canvas->cr);
   if (status == CAIRO_STATUS_SUCCESS && canvas->format == DEA_CANVAS_PNG) {
-    status = cairo_surface_write_to_png_stream(canvas->surface, take, &canvas->bytes);
+    status = cairo_surface_write_to_png_stream(canvas->surface, append_bytes, &canvas->bytes);
   }
   if (status == CAIRO_STATUS_SUCCESS) {
     cairo_surface_finish(canvas->surface);

@@ -19,14 +19,14 @@ static void keep_message(const char *message, void *user)
   snprintf(g->said, sizeof g->said, "%s", message);
 }
 
-static dea_status give_up(const struct geos *g)
+static dea_status report_failure(const struct geos *g)
 {
   return dea_fail(g->ctx, DEA_E_DESIGN, "the regions cannot be combined: %s",
                   g->said[0] != '\0' ? g->said : "GEOS gives no reason");
 }
 
 /* Points [first, end) as a closed ring. */
-static GEOSGeometry *make_ring(const struct geos *g, const struct dea_rings *rings, size_t i)
+static GEOSGeometry *build_ring(const struct geos *g, const struct dea_rings *rings, size_t i)
 {
   size_t first = i > 0 ? rings->end[i - 1] : 0, count = rings->end[i] - first;
   GEOSCoordSequence *points = GEOSCoordSeq_create_r(g->handle, (unsigned)count + 1, 2);
@@ -48,13 +48,13 @@ static void destroy(const struct geos *g, GEOSGeometry **parts, size_t count)
 
 /* The polygon whose outline is ring i, and the number of the ring after its holes. rings_made: room
  * for a geometry a ring. */
-static GEOSGeometry *make_polygon(const struct geos *g, const struct dea_rings *rings, size_t i,
-                                  GEOSGeometry **rings_made, size_t *next)
+static GEOSGeometry *build_polygon(const struct geos *g, const struct dea_rings *rings, size_t i,
+                                   GEOSGeometry **rings_made, size_t *next)
 {
   unsigned count = 0;
   bool good = true;
   for (*next = i; *next < rings->count && rings->polygon[*next] == rings->polygon[i]; ++*next) {
-    rings_made[count] = make_ring(g, rings, *next);
+    rings_made[count] = build_ring(g, rings, *next);
     good = good && rings_made[count] != NULL;
     count++;
   }
@@ -66,12 +66,12 @@ static GEOSGeometry *make_polygon(const struct geos *g, const struct dea_rings *
 }
 
 /* Union of all polygons; NULL on failure. parts: room for a geometry a ring and one more. */
-static GEOSGeometry *make_polygons(const struct geos *g, const struct dea_rings *rings,
-                                   GEOSGeometry **parts)
+static GEOSGeometry *build_polygons(const struct geos *g, const struct dea_rings *rings,
+                                    GEOSGeometry **parts)
 {
   unsigned polygons = 0;
   for (size_t i = 0; i < rings->count; polygons++) {
-    parts[polygons] = make_polygon(g, rings, i, parts + polygons, &i);
+    parts[polygons] = build_polygon(g, rings, i, parts + polygons, &i);
     if (parts[polygons] == NULL) {
       destroy(g, parts, polygons);
       return NULL;
@@ -93,7 +93,7 @@ static dea_status add_ring(const struct geos *g, const GEOSGeometry *ring, size_
   const GEOSCoordSequence *points = GEOSGeom_getCoordSeq_r(g->handle, ring);
   unsigned count = 0;
   if (points == NULL || !GEOSCoordSeq_getSize_r(g->handle, points, &count) || count < 4) {
-    return give_up(g);
+    return report_failure(g);
   }
   size_t first = out->count > 0 ? out->end[out->count - 1] : 0, n = first + count - 1;
   double(*point)[2] = dea_resize(g->ctx, out->point, n + 1, sizeof *point);
@@ -169,10 +169,10 @@ static dea_status overlay(struct dea_context *ctx, enum dea_boolean what, const 
     return dea_fail(ctx, DEA_E_MEMORY, "out of memory in GEOS");
   }
   GEOSContext_setErrorMessageHandler_r(g.handle, keep_message, &g);
-  GEOSGeometry *first = make_polygons(&g, a, parts);
-  GEOSGeometry *second = first != NULL ? make_polygons(&g, b, parts) : NULL;
+  GEOSGeometry *first = build_polygons(&g, a, parts);
+  GEOSGeometry *second = first != NULL ? build_polygons(&g, b, parts) : NULL;
   GEOSGeometry *result = second != NULL ? combine(&g, what, first, second) : NULL;
-  dea_status status = result != NULL ? read_polygons(&g, result, out) : give_up(&g);
+  dea_status status = result != NULL ? read_polygons(&g, result, out) : report_failure(&g);
   GEOSGeometry *made[3] = {first, second, result};
   destroy(&g, made, 3);
   GEOS_finish_r(g.handle);

@@ -71,7 +71,7 @@ static dea_status find_extremes(const struct dea_disc *disc, const double *u, do
       }
       out->min_tension_N_per_m =
           fmin(out->min_tension_N_per_m, fmin(at.tension_r_N_per_m, at.tension_t_N_per_m));
-      dea_reach_take(&reach, dea_material_reach(disc->film.material, at.stretch_r, at.stretch_t));
+      dea_reach_merge(&reach, dea_material_reach(disc->film.material, at.stretch_r, at.stretch_t));
       if (disc->element[e].active) {
         double area = at.stretch_r * at.stretch_t;
         out->true_field_V_per_m = fmax(out->true_field_V_per_m, field * area);
@@ -147,7 +147,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
   model->device = *of;
   static const double rest[DEA_PATH_UNKNOWNS_MAX] = {0};
   DEA_TRY(ctx, dea_disc_create(ctx, device, ORDER_OUTER, &model->disc));
-  DEA_TRY(ctx, dea_film_say_weight(ctx, device, "axisymmetric"));
+  DEA_TRY(ctx, dea_film_report_weight(ctx, device, "axisymmetric"));
   model->max_stretch = 10 * device->pre_stretch;
   const struct dea_path_system system = {
       .unknowns = dea_disc_unknowns(&model->disc),
@@ -185,7 +185,8 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  return DEA_CHAIN(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  return DEA_CHAIN(ctx,
+                   dea_model_build(ctx, sizeof **out, device, settings, prepare, destroy, out));
 }
 
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,

@@ -86,7 +86,7 @@ static dea_status fill_point(const struct dea_model *model, const struct dea_lum
   out->min_tension_N_per_m = fmin(smallest_tension(film, &balance.active, l_A),
                                   smallest_tension(film, &balance.passive, l_P));
   struct dea_reach reach = dea_material_reach(film->material, l_A, l_A);
-  dea_reach_take(&reach, dea_material_reach(film->material, l_P, l_P));
+  dea_reach_merge(&reach, dea_material_reach(film->material, l_P, l_P));
   out->locking_share = reach.locking_share;
   out->range_share = reach.range_share;
   out->energy_J = (balance.energy_Pa - model->rest_energy_Pa) * disc_volume_m3(model);
@@ -133,7 +133,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
                                  "without the film between them (paper eqs 18-20): upper bounds, "
                                  "far above a pre-stretched film's, and without a sign"));
   }
-  DEA_TRY(ctx, dea_film_say_weight(ctx, device, "lumped"));
+  DEA_TRY(ctx, dea_film_report_weight(ctx, device, "lumped"));
   model->modulus_Pa = dea_film_modulus(&model->lumped.film);
   model->max_stretch = fmin(10 * device->pre_stretch, device->pre_stretch / device->coverage);
   struct dea_lumped_balance rest;
@@ -158,7 +158,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  return DEA_CHAIN(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  return DEA_CHAIN(ctx,
+                   dea_model_build(ctx, sizeof **out, device, settings, prepare, destroy, out));
 }
 
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,

@@ -36,9 +36,9 @@ struct dea_reduced_order {
 };
 
 /* By model 3d of a device, as settings.reduced says. out: owned by the caller, NULL on failure. */
-dea_status dea_reduced_order_make(struct dea_context *ctx, const struct dea_device *device,
-                                  const struct dea_model_settings *settings,
-                                  struct dea_reduced_order **out);
+dea_status dea_reduced_order_build(struct dea_context *ctx, const struct dea_device *device,
+                                   const struct dea_model_settings *settings,
+                                   struct dea_reduced_order **out);
 /* Sets the hash of the device. */
 dea_status dea_reduced_order_mark(struct dea_context *ctx, struct dea_reduced_order *order,
                                   const struct dea_device *device,

@@ -72,14 +72,14 @@ static json_t *spline_json(const struct dea_reduced_spline *s)
   return object;
 }
 
-static void put_place(json_t *object, const struct dea_device *device, int column, size_t monitor,
+static void add_place(json_t *object, const struct dea_device *device, int column, size_t monitor,
                       int motion)
 {
   if (column != 0) {
-    dea_json_put_text(object, "column", dea_point_columns[column].key);
+    dea_json_add_text(object, "column", dea_point_columns[column].key);
   } else {
-    dea_json_put_text(object, "monitor", device->layout->monitors[monitor].name);
-    dea_json_put_text(object, "motion", motions[motion]);
+    dea_json_add_text(object, "monitor", device->layout->monitors[monitor].name);
+    dea_json_add_text(object, "motion", motions[motion]);
   }
 }
 
@@ -88,43 +88,43 @@ static json_t *order_json(const struct dea_reduced_order *o, const struct dea_de
   const struct dea_reduced *core = &o->core;
   json_t *root = json_object(), *outputs = json_array(), *modes = json_array(),
          *coordinate = json_object();
-  dea_json_put_count(root, "dea_reduced_order", FORMAT);
-  dea_json_put_text(root, "program", DEA_VERSION);
-  dea_json_put_text(root, "device", o->device);
-  put_place(coordinate, device, o->coordinate.column, o->coordinate.body, o->coordinate.component);
+  dea_json_add_count(root, "dea_reduced_order", FORMAT);
+  dea_json_add_text(root, "program", DEA_VERSION);
+  dea_json_add_text(root, "device", o->device);
+  add_place(coordinate, device, o->coordinate.column, o->coordinate.body, o->coordinate.component);
   json_object_set_new(root, "coordinate", coordinate);
   json_object_set_new(root, "range_voltage_V", numbers(o->voltage_V, 2));
   json_object_set_new(root, "range_force", numbers(o->force, 2));
-  dea_json_put(root, "stroke", o->stroke);
-  dea_json_put(root, "error", o->error);
-  dea_json_put(root, "charge_error", o->charge_error);
-  dea_json_put(root, "mode_share", o->mode_share);
-  dea_json_put(root, "made_s", o->made_s);
+  dea_json_add(root, "stroke", o->stroke);
+  dea_json_add(root, "error", o->error);
+  dea_json_add(root, "charge_error", o->charge_error);
+  dea_json_add(root, "mode_share", o->mode_share);
+  dea_json_add(root, "made_s", o->made_s);
   json_object_set_new(root, "even", json_boolean(core->even));
   json_object_set_new(root, "energy", spline_json(&core->energy));
-  dea_json_put(root, "middle", core->middle);
+  dea_json_add(root, "middle", core->middle);
   for (int i = 0; i < core->small_count; i++) {
     json_t *mode = json_object();
     json_object_set_new(mode, "mass", numbers(core->modes[i].mass, 3));
-    dea_json_put(mode, "share", core->modes[i].share);
-    dea_json_put(mode, "voltage_share", core->modes[i].voltage_share);
+    dea_json_add(mode, "share", core->modes[i].share);
+    dea_json_add(mode, "voltage_share", core->modes[i].voltage_share);
     json_object_set_new(mode, "voltage_share_by_q", numbers(core->modes[i].by_q, 3));
     json_array_append_new(modes, mode);
   }
   json_object_set_new(root, "modes", modes);
-  dea_json_put_count(root, "modes_in_time", (size_t)core->mode_count);
+  dea_json_add_count(root, "modes_in_time", (size_t)core->mode_count);
   json_object_set_new(root, "voltage_share_off",
                       numbers(o->share_off, (size_t)core->mode_count + 1));
-  dea_json_put(root, "left_Hz", o->left_Hz);
+  dea_json_add(root, "left_Hz", o->left_Hz);
   json_object_set_new(root, "strain", numbers(core->strain, 3));
-  dea_json_put(root, "damping", core->damping);
+  dea_json_add(root, "damping", core->damping);
   json_object_set_new(root, "branch_N_per_m",
                       numbers(core->branch_N_per_m, (size_t)core->branch_count));
   json_object_set_new(root, "branch_s", numbers(core->branch_s, (size_t)core->branch_count));
   for (size_t i = 0; i < o->output_count; i++) {
     const struct dea_reduced_output *of = &o->outputs[i];
     json_t *object = spline_json(&of->of);
-    put_place(object, device, of->column, of->monitor, (int)of->motion);
+    add_place(object, device, of->column, of->monitor, (int)of->motion);
     json_array_append_new(outputs, object);
   }
   json_object_set_new(root, "outputs", outputs);

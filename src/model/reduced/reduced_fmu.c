@@ -159,9 +159,9 @@ static dea_status pack(struct dea_context *ctx, const char *folder, const char *
   size_t length;
   bool there;
   snprintf(name, sizeof name, "%s/sources", folder);
-  DEA_TRY(ctx, dea_folder_make(ctx, name));
+  DEA_TRY(ctx, dea_folder_create(ctx, name));
   snprintf(name, sizeof name, "%s/" PLATFORM, folder);
-  DEA_TRY(ctx, dea_folder_make(ctx, name));
+  DEA_TRY(ctx, dea_folder_create(ctx, name));
   for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
     DEA_TRY(ctx, dea_file_write_into(ctx, folder, files[i][0], files[i][1], strlen(files[i][1])));
   }

@@ -101,7 +101,7 @@ static bool ends(dea_status status)
   return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED;
 }
 
-static dea_status give_up(struct making *m, const char *what)
+static dea_status refuse(struct making *m, const char *what)
 {
   char why[200];
   snprintf(why, sizeof why, "%s", dea_context_message(m->ctx));
@@ -140,7 +140,7 @@ static dea_status find_range(struct making *m)
   }
   dea_context_clear(m->ctx);
   if (end_V == 0) {
-    return give_up(m, "model 3d has no state above 0 V that is sure");
+    return refuse(m, "model 3d has no state above 0 V that is sure");
   }
   if (end_V < m->highest_V) {
     DEA_TRY(m->ctx, dea_finding_add(m->ctx, DEA_NOTE, (struct dea_location){0},
@@ -166,7 +166,7 @@ static dea_status find_range(struct making *m)
 
 // Samples -----------------------------------------------------------------------------------------
 
-static dea_status take_sample(struct making *m, size_t force, size_t voltage, double value)
+static dea_status add_sample(struct making *m, size_t force, size_t voltage, double value)
 {
   const size_t n = force * m->grid.voltages + voltage, middle = m->grid.forces / 2,
                count = m->device->layout->monitor_count;
@@ -220,7 +220,7 @@ static void spread(struct making *m)
 
 /* All forces at a voltage, in the order that `side` says: the first of them is where the model is.
  */
-static dea_status take_voltage(struct making *m, size_t i, int side)
+static dea_status sample_voltage(struct making *m, size_t i, int side)
 {
   const size_t middle = m->grid.forces / 2;
   const double step = side * m->force / (double)middle;
@@ -230,7 +230,7 @@ static dea_status take_voltage(struct making *m, size_t i, int side)
   for (size_t k = 0; k < m->grid.forces; k++) {
     const size_t j = side < 0 ? m->grid.forces - 1 - k : k;
     const double value = k == middle ? 0 : ((double)k - (double)middle) * step;
-    DEA_TRY(m->ctx, take_sample(m, j, i, value));
+    DEA_TRY(m->ctx, add_sample(m, j, i, value));
     m->samples[j * m->grid.voltages + i].voltage_V = V;
   }
   return DEA_OK;
@@ -238,7 +238,7 @@ static dea_status take_voltage(struct making *m, size_t i, int side)
 
 /* Voltages upwards and, where these are not enough, those between them on the way back: from each
  * to the next at the force where it ends. */
-static dea_status take_voltages(struct making *m, double error[2])
+static dea_status sample_voltages(struct making *m, double error[2])
 {
   static const double enough = 5e-3;
   const bool chosen = m->settings.reduced.voltages > 0;
@@ -249,7 +249,7 @@ static dea_status take_voltages(struct making *m, double error[2])
   DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, 0, &point));
   DEA_TRY(m->ctx, m->type->move(m->ctx, m->model, &m->coordinate, -m->force, &point));
   for (size_t i = 0; i < m->grid.voltages; i++, side = -side) {
-    DEA_TRY(m->ctx, take_voltage(m, i, side));
+    DEA_TRY(m->ctx, sample_voltage(m, i, side));
     dea_progress(m->ctx, "reduced-order samples", i + 1, m->grid.voltages);
   }
   DEA_TRY(m->ctx, hold_out(m, error));
@@ -258,7 +258,7 @@ static dea_status take_voltages(struct making *m, double error[2])
   }
   spread(m);
   for (size_t i = m->grid.voltages - 1; i-- > 0; i--, side = -side) {
-    DEA_TRY(m->ctx, take_voltage(m, i, side));
+    DEA_TRY(m->ctx, sample_voltage(m, i, side));
     dea_progress(m->ctx, "reduced-order samples", m->grid.voltages - i / 2, m->grid.voltages);
   }
   return DEA_CHAIN(m->ctx, hold_out(m, error));
@@ -266,11 +266,11 @@ static dea_status take_voltages(struct making *m, double error[2])
 
 /* With smaller forces where the device does not bear these, and then with smaller voltages: close
  * to where it loses its stability it bears none. */
-static dea_status take_samples(struct making *m, double error[2])
+static dea_status compute_samples(struct making *m, double error[2])
 {
   enum { TRIALS = 8, OF_FORCE = 4 };
   for (int trial = 0; trial < TRIALS; trial++) {
-    const dea_status status = take_voltages(m, error);
+    const dea_status status = sample_voltages(m, error);
     if (status == DEA_OK || ends(status) || m->settings.reduced.force > 0) {
       return DEA_CHAIN(m->ctx, status);
     }
@@ -280,7 +280,7 @@ static dea_status take_samples(struct making *m, double error[2])
       m->highest_V *= trial < OF_FORCE ? 1 : 0.95;
     }
   }
-  return give_up(m, "the device bears no force along the coordinate");
+  return refuse(m, "the device bears no force along the coordinate");
 }
 
 // Fits --------------------------------------------------------------------------------------------
@@ -494,7 +494,7 @@ static dea_status fit(struct making *m, struct dea_reduced_order *out)
 
 // All of it ---------------------------------------------------------------------------------------
 
-static dea_status make(struct making *m, struct dea_reduced_order *out)
+static dea_status build(struct making *m, struct dea_reduced_order *out)
 {
   const size_t samples = m->grid.forces * m->grid.voltages; // the most
   double error[2];
@@ -506,16 +506,16 @@ static dea_status make(struct making *m, struct dea_reduced_order *out)
   m->grid.samples = m->samples;
   DEA_TRY(m->ctx, restart(m));
   DEA_TRY(m->ctx, find_range(m));
-  DEA_TRY(m->ctx, take_samples(m, error));
+  DEA_TRY(m->ctx, compute_samples(m, error));
   out->error = error[0];
   out->charge_error = error[1];
   DEA_TRY(m->ctx, fit(m, out));
   return DEA_CHAIN(m->ctx, dea_reduced_order_mark(m->ctx, out, m->device, &m->settings));
 }
 
-dea_status dea_reduced_order_make(struct dea_context *ctx, const struct dea_device *device,
-                                  const struct dea_model_settings *settings,
-                                  struct dea_reduced_order **out)
+dea_status dea_reduced_order_build(struct dea_context *ctx, const struct dea_device *device,
+                                   const struct dea_model_settings *settings,
+                                   struct dea_reduced_order **out)
 {
   const double began_s = dea_clock_s();
   struct making m = {
@@ -538,7 +538,7 @@ dea_status dea_reduced_order_make(struct dea_context *ctx, const struct dea_devi
   m.massive = dea_device_check_densities(ctx, device) == DEA_OK;
   dea_finding_trial_end(ctx, errors);
   dea_context_clear(ctx);
-  dea_status status = m.highest_V > 0 ? make(&m, *out)
+  dea_status status = m.highest_V > 0 ? build(&m, *out)
                                       : dea_fail(ctx, DEA_E_DESIGN,
                                                  "a reduced-order model needs a voltage above 0 "
                                                  "(compute.reduced.voltage, compute.voltage)");

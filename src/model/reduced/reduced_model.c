@@ -70,7 +70,7 @@ static double rise_s(const struct dea_reduced_order *o, double part)
 }
 
 /* What the model is of and how far it goes. */
-static dea_status say(struct dea_context *ctx, const struct dea_model *model)
+static dea_status report(struct dea_context *ctx, const struct dea_model *model)
 {
   const struct dea_reduced_order *o = model->order;
   char name[120], fastest[120] = "";
@@ -102,19 +102,20 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
     DEA_TRY(ctx,
             dea_reduced_order_read(ctx, settings->reduced.file, device, settings, &model->order));
   } else {
-    DEA_TRY(ctx, dea_reduced_order_make(ctx, device, settings, &model->order));
+    DEA_TRY(ctx, dea_reduced_order_build(ctx, device, settings, &model->order));
   }
   model->monitor = dea_arena_alloc(&model->memory, l->monitor_count + 1, sizeof *model->monitor);
   model->body = dea_arena_alloc(&model->memory, l->body_count + 1, sizeof *model->body);
   model->channel = dea_arena_alloc(&model->memory, l->channel_count, sizeof *model->channel);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
-  return DEA_CHAIN(ctx, say(ctx, model));
+  return DEA_CHAIN(ctx, report(ctx, model));
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  return DEA_CHAIN(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  return DEA_CHAIN(ctx,
+                   dea_model_build(ctx, sizeof **out, device, settings, prepare, destroy, out));
 }
 
 // Points ------------------------------------------------------------------------------------------

@@ -113,15 +113,15 @@ static json_t *matrix(size_t rows, size_t columns, size_t width, const double *v
 static json_t *system_json(const struct bias *b, const struct system *s, bool turns)
 {
   json_t *root = json_object();
-  dea_json_put_count(root, "dea_state_space", 1);
-  dea_json_put_text(root, "program", DEA_VERSION);
+  dea_json_add_count(root, "dea_state_space", 1);
+  dea_json_add_text(root, "program", DEA_VERSION);
   json_object_set_new(root, "inputs",
                       json_pack("[s, s]", "voltage_V", turns ? "moment_N_m" : "force_N"));
   json_object_set_new(root, "outputs",
                       json_pack("[s, s]", turns ? "turn_rad" : "displacement_m", "charge_C"));
   json_object_set_new(root, "bias_inputs", json_pack("[f, f]", b->at.voltage_V, b->at.force));
   json_object_set_new(root, "bias_outputs", json_pack("[f, f]", b->at.q, b->at.charge_C));
-  dea_json_put(root, "damping_ratio", b->damping_ratio);
+  dea_json_add(root, "damping_ratio", b->damping_ratio);
   json_object_set_new(root, "A", matrix(s->states, s->states, STATES, s->A[0]));
   json_object_set_new(root, "B", matrix(s->states, PORTS, PORTS, s->B[0]));
   json_object_set_new(root, "C", matrix(PORTS, s->states, STATES, s->C[0]));

@@ -78,7 +78,7 @@ static dea_status name_groups(struct dea_context *ctx, struct dea_layout_mesh *m
 
 /* The numbers of plies and channels that a disc cannot have, such as one electrode that is thicker
  * than the other, into its layout. */
-static void take_numbers(const struct dea_layout *from, struct dea_layout *to)
+static void copy_numbers(const struct dea_layout *from, struct dea_layout *to)
 {
   for (size_t i = 0; i < to->ply_count; i++) {
     const struct dea_layout_ply *a = &from->plies[i];
@@ -95,8 +95,8 @@ static void take_numbers(const struct dea_layout *from, struct dea_layout *to)
   to->channels[1].own_V = from->channels[1].own_V;
 }
 
-static dea_status make_plane(struct dea_context *ctx, const struct dea_device *device,
-                             struct dea_layout_mesh *mesh)
+static dea_status build_plane(struct dea_context *ctx, const struct dea_device *device,
+                              struct dea_layout_mesh *mesh)
 {
   const struct dea_fibre_disc *p = &mesh->plate;
   struct dea_device disc = *device;
@@ -108,7 +108,7 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_device *d
     return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a monitor's region");
   }
   if (!device->disc && device->layout != NULL) {
-    take_numbers(device->layout, mesh->own);
+    copy_numbers(device->layout, mesh->own);
   }
   mesh->layout = mesh->own;
   DEA_TRY(ctx, dea_fibre_disc_plane(ctx, p, &mesh->cuts, &mesh->plane));
@@ -134,7 +134,7 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
       .sector = {.angle_rad = like != NULL ? like->sector.angle_rad : device->angle_rad,
                  .fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
       .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
-  DEA_TRY_ELSE(ctx, make_plane(ctx, device, out), dea_layout_mesh_free(ctx, out));
+  DEA_TRY_ELSE(ctx, build_plane(ctx, device, out), dea_layout_mesh_free(ctx, out));
   return DEA_CHAIN(ctx, like != NULL ? dea_layout_mesh_fill_like(ctx, settings, like, out)
                                      : dea_layout_mesh_fill(ctx, settings, out));
 }

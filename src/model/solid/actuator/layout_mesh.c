@@ -286,7 +286,7 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
 
 /* Sizes of elements that were asked for, in the place of those of the plan; rows along edges are as
  * many times more as the smallest of them is finer. */
-static void take_sizes(const struct dea_model_settings *settings, struct dea_gmsh_plan *plan)
+static void get_sizes(const struct dea_model_settings *settings, struct dea_gmsh_plan *plan)
 {
   const double usual_m = layered_edge_share * plan->size_m;
   double least_m = usual_m;
@@ -301,8 +301,8 @@ static void take_sizes(const struct dea_model_settings *settings, struct dea_gms
   plan->layer_rows = (size_t)lround(layer_rows * fmin(most_rows_finer, usual_m / least_m));
 }
 
-static dea_status make_plane(struct dea_context *ctx, const struct dea_model_settings *settings,
-                             struct dea_layout_mesh *mesh)
+static dea_status build_plane(struct dea_context *ctx, const struct dea_model_settings *settings,
+                              struct dea_layout_mesh *mesh)
 {
   const struct dea_layout *l = mesh->layout;
   struct dea_arena memory = {.ctx = ctx};
@@ -321,7 +321,7 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_model_set
   }
   status = status == DEA_OK ? fill_plan(&memory, mesh, settings, clipped, &plan) : status;
   if (status == DEA_OK && settings->size_count > 0) {
-    take_sizes(settings, &plan);
+    get_sizes(settings, &plan);
   }
   status = status == DEA_OK ? dea_gmsh_mesh(ctx, &plan, &mesh->plane) : status;
   for (size_t i = 0; clipped != NULL && i < l->region_count; i++) {
@@ -577,7 +577,7 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
   if (settings->domain == DEA_DOMAIN_SECTOR && dea_boolean_find(module, sizeof module)) {
     out->sector = dea_layout_sector_of(layout);
   }
-  DEA_TRY_ELSE(ctx, make_plane(ctx, settings, out), dea_layout_mesh_free(ctx, out));
+  DEA_TRY_ELSE(ctx, build_plane(ctx, settings, out), dea_layout_mesh_free(ctx, out));
   return DEA_CHAIN(ctx, dea_layout_mesh_fill(ctx, settings, out));
 }
 

@@ -56,8 +56,8 @@ static void box_map(const void *self, double s, double t, double x[2])
   x[1] = spec->box_m[1] * t;
 }
 
-static dea_status make_box(struct dea_context *ctx, const struct dea_solid_spec *spec,
-                           struct dea_grid **out)
+static dea_status build_box(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                            struct dea_grid **out)
 {
   size_t nx = spec->elements[0], ny = spec->elements[1];
   double *cuts = dea_alloc(ctx, nx + ny + 2, sizeof *cuts);
@@ -106,8 +106,8 @@ static dea_status fill_grid(struct dea_context *ctx, const struct dea_solid_spec
   return DEA_OK;
 }
 
-static dea_status make_grid(struct dea_context *ctx, const struct dea_solid_spec *spec,
-                            struct dea_grid **out)
+static dea_status build_grid(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                             struct dea_grid **out)
 {
   DEA_TRY(ctx, dea_grid_allocate(ctx, spec->order, spec->order_z, spec->point_count,
                                  spec->cell_count, out));
@@ -178,8 +178,8 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_solid_spec *
   return DEA_OK;
 }
 
-static dea_status make_plies(struct dea_context *ctx, const struct dea_solid_spec *spec,
-                             struct dea_plane_mesh **plane, struct dea_grid **out)
+static dea_status build_plies(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                              struct dea_plane_mesh **plane, struct dea_grid **out)
 {
   struct filling filling = {0};
   DEA_TRY(ctx, dea_msh_read(ctx, spec->msh_file, spec->msh_unit_m, plane));
@@ -300,8 +300,8 @@ static dea_status add_bodies(struct dea_context *ctx, const struct dea_solid_spe
 // Parts ------------------------------------------------------------------------------------------
 
 /* Of the compressible law where the part has none. */
-static dea_status make_part_material(struct dea_context *ctx, const struct dea_part_spec *part,
-                                     struct dea_part_material *out)
+static dea_status build_part_material(struct dea_context *ctx, const struct dea_part_spec *part,
+                                      struct dea_part_material *out)
 {
   double l = part->pre_stretch;
   if (part->law == NULL) {
@@ -344,8 +344,8 @@ static void channels(const void *self, int region, int ply, int *top, int *botto
 }
 
 /* Of all parts, and the highest one. */
-static dea_status take_channels(struct dea_context *ctx, const struct dea_solid_spec *spec,
-                                struct dea_solid_object *object)
+static dea_status get_channels(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                               struct dea_solid_object *object)
 {
   enum { CHANNELS_MAX = 1000 };
   object->channel_count = 1;
@@ -396,9 +396,9 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
 }
 
 /* With the bodies of the spec, whose memory is of the caller. */
-static dea_status make_solid(struct dea_context *ctx, const struct dea_solid_spec *spec,
-                             struct dea_solid_object *object, struct dea_solid_body *bodies,
-                             int *follows)
+static dea_status build_solid(struct dea_context *ctx, const struct dea_solid_spec *spec,
+                              struct dea_solid_object *object, struct dea_solid_body *bodies,
+                              int *follows)
 {
   DEA_TRY(ctx, add_bodies(ctx, spec, object, bodies, follows));
   const struct dea_solid_options options = {.order_z = spec->order_z,
@@ -420,25 +420,25 @@ static dea_status make_solid(struct dea_context *ctx, const struct dea_solid_spe
 static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spec,
                        struct dea_solid_object *object)
 {
-  DEA_TRY(ctx, spec->msh_file != NULL  ? make_plies(ctx, spec, &object->plane, &object->grid)
-               : spec->elements[0] > 0 ? make_box(ctx, spec, &object->grid)
-                                       : make_grid(ctx, spec, &object->grid));
+  DEA_TRY(ctx, spec->msh_file != NULL  ? build_plies(ctx, spec, &object->plane, &object->grid)
+               : spec->elements[0] > 0 ? build_box(ctx, spec, &object->grid)
+                                       : build_grid(ctx, spec, &object->grid));
   object->length_m = size_of(object->grid);
   object->mesh_node_count = object->grid->node_count;
   object->part_count = spec->part_count;
   object->part_materials = dea_alloc(ctx, spec->part_count, sizeof *object->part_materials);
   object->between = dea_alloc(ctx, spec->part_count, sizeof *object->between);
   DEA_TRY_MEMORY(object->part_materials != NULL && object->between != NULL);
-  DEA_TRY(ctx, take_channels(ctx, spec, object));
+  DEA_TRY(ctx, get_channels(ctx, spec, object));
   for (size_t i = 0; i < spec->part_count; i++) {
-    DEA_TRY(ctx, make_part_material(ctx, &spec->parts[i], &object->part_materials[i]));
+    DEA_TRY(ctx, build_part_material(ctx, &spec->parts[i], &object->part_materials[i]));
   }
   object->body_count = spec->body_count;
   object->body_values = dea_alloc(ctx, 12 * spec->body_count, sizeof(double));
   struct dea_solid_body *bodies = dea_alloc(ctx, spec->body_count, sizeof *bodies);
   int *follows = dea_alloc(ctx, object->mesh_node_count + 2 * spec->body_count, sizeof *follows);
   dea_status status = object->body_values != NULL && bodies != NULL && follows != NULL
-                          ? make_solid(ctx, spec, object, bodies, follows)
+                          ? build_solid(ctx, spec, object, bodies, follows)
                           : DEA_E_MEMORY;
   dea_free(ctx, bodies);
   dea_free(ctx, follows);

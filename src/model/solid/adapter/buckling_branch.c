@@ -70,10 +70,10 @@ static void set_push(const struct wanted *wanted, const double *u, double *push)
   }
 }
 
-dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *solid,
-                                    const struct dea_grid *grid, const struct dea_film_band *film,
-                                    enum dea_buckling_branch side, struct dea_solid_report *report,
-                                    bool *moved)
+dea_status dea_buckling_branch_select(struct dea_context *ctx, struct dea_solid *solid,
+                                      const struct dea_grid *grid, const struct dea_film_band *film,
+                                      enum dea_buckling_branch side,
+                                      struct dea_solid_report *report, bool *moved)
 {
   struct wanted wanted = {.grid = grid,
                           .film = film,

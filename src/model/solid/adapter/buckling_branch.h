@@ -15,10 +15,10 @@ bool dea_film_band_has(const struct dea_film_band *film, double z_m);
  * film and fibres out of the plane, from one that is not there: turns what is on the other side
  * into its mirror image, and goes down from there. *moved: whether there was one; if not the solid
  * stays where it is. Nothing to do with DEA_BRANCH_ANY or on the right side. */
-dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *solid,
-                                    const struct dea_grid *grid, const struct dea_film_band *film,
-                                    enum dea_buckling_branch side, struct dea_solid_report *report,
-                                    bool *moved);
+dea_status dea_buckling_branch_select(struct dea_context *ctx, struct dea_solid *solid,
+                                      const struct dea_grid *grid, const struct dea_film_band *film,
+                                      enum dea_buckling_branch side,
+                                      struct dea_solid_report *report, bool *moved);
 
 /* What folds the film to one side of the middle plane (sign: 1 the fibres', -1 the other): its
  * middle goes from z to sign (sqrt(z^2 + h^2) - h), with the film's thickness h, so that there is

@@ -10,7 +10,7 @@ struct rule {
   struct dea_face_shape plane, column;
 };
 
-static void make_rule(const struct dea_grid *g, struct rule *out)
+static void build_rule(const struct dea_grid *g, struct rule *out)
 {
   const int orders[2] = {g->order, g->order_z};
   for (int i = 0; i < 2; i++) {
@@ -88,7 +88,7 @@ dea_status dea_dead_force_add(struct dea_context *ctx, const struct dea_layout_m
   double *share = dea_alloc(ctx, g->node_count, sizeof *share), total = 0;
   struct rule rule;
   DEA_TRY_MEMORY(share != NULL);
-  make_rule(g, &rule);
+  build_rule(g, &rule);
   dea_layout_mesh_mark(mesh, support->region, support->edge, support->within, room);
   for (int inside = 1; inside >= 0 && total == 0; inside--) { // an edge has two sides
     for (size_t e = 0; e < g->element_count; e++) {

@@ -54,7 +54,7 @@ dea_status dea_gradient_film_slope(struct dea_context *ctx, const struct dea_gra
   return DEA_OK;
 }
 
-static bool asks(const struct dea_gradient_ask *ask, const char *key)
+static bool asks(const struct dea_gradient_request *ask, const char *key)
 {
   for (size_t i = 0; i < ask->column_count; i++) {
     if (strcmp(dea_point_columns[ask->columns[i]].key, key) == 0) {
@@ -66,7 +66,7 @@ static bool asks(const struct dea_gradient_ask *ask, const char *key)
 
 dea_status dea_gradient_film_at(struct dea_context *ctx, const struct dea_gradient_film *film,
                                 const struct dea_gradient_places *places,
-                                const struct dea_gradient_ask *ask, double voltage_V,
+                                const struct dea_gradient_request *ask, double voltage_V,
                                 struct dea_load_point *out)
 {
   double *const values[DEA_FILM_EXTREMES] = {
@@ -87,7 +87,7 @@ dea_status dea_gradient_film_at(struct dea_context *ctx, const struct dea_gradie
   return DEA_OK;
 }
 
-dea_status dea_gradient_rest_energy(struct dea_solid *s, const struct dea_gradient_ask *ask,
+dea_status dea_gradient_rest_energy(struct dea_solid *s, const struct dea_gradient_request *ask,
                                     double *u, double *multipliers, double *energy_J)
 {
   double *own = s->state.multiplier;
@@ -126,7 +126,7 @@ struct border {
 
 struct work {
   const struct dea_gradient_owner *owner;
-  const struct dea_gradient_ask *ask;
+  const struct dea_gradient_request *ask;
   struct dea_adjoint *adjoint;
   bool *known;          // [dea_gradient_width + 1] there is an answer; the last one: the border's
   double *side;         // [2][dea_gradient_width]
@@ -147,18 +147,18 @@ static bool is_frequency(int column)
   return strcmp(dea_point_columns[column].key, "frequency_Hz") == 0;
 }
 
-bool dea_gradient_asks_mode(const struct dea_gradient_ask *ask)
+bool dea_gradient_asks_mode(const struct dea_gradient_request *ask)
 {
   return asks(ask, "frequency_Hz");
 }
 
 /* Which mode a column is of. */
-static size_t mode_of(const struct dea_gradient_ask *ask, size_t column)
+static size_t mode_of(const struct dea_gradient_request *ask, size_t column)
 {
   return ask->modes != NULL ? ask->modes[column] : 0;
 }
 
-static bool is_asked(const struct dea_gradient_ask *ask, size_t mode)
+static bool is_asked(const struct dea_gradient_request *ask, size_t mode)
 {
   bool asked = false;
   for (size_t i = 0; i < ask->column_count; i++) {
@@ -169,8 +169,8 @@ static bool is_asked(const struct dea_gradient_ask *ask, size_t mode)
 
 /* One of them; without a slope where another one has the same frequency. squares: of all, with the
  * one above. */
-static dea_status take_mode(struct dea_context *ctx, struct work *w, size_t i,
-                            const double *squares, double *v)
+static dea_status get_mode(struct dea_context *ctx, struct work *w, size_t i, const double *squares,
+                           double *v)
 {
   static const double apart = 1e-4, pi = 3.14159265358979323846;
   const double square = squares[i], least = apart * fabs(square);
@@ -208,7 +208,7 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
   DEA_TRY(ctx, dea_solid_modes_whole(ctx, s, DEA_MODES_BY_MASS, count, squares, v));
   for (size_t i = 0; i < w->mode_count; i++) {
-    DEA_TRY(ctx, take_mode(ctx, w, i, squares, v + i * dofs));
+    DEA_TRY(ctx, get_mode(ctx, w, i, squares, v + i * dofs));
   }
   return DEA_OK;
 }
@@ -574,7 +574,7 @@ static dea_status find_by_changes(struct dea_context *ctx, struct work *w, doubl
 }
 
 /* For what residuals are taken along. */
-static dea_status make_room(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
+static dea_status reserve(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
   const size_t states = w->owner->solid->problem.dofs + dea_adjoint_multipliers(w->adjoint);
   w->here = dea_arena_alloc(memory, states, sizeof(double));
@@ -584,7 +584,7 @@ static dea_status make_room(struct dea_context *ctx, struct work *w, struct dea_
 
 /* At the equilibrium. */
 static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                            const struct dea_gradient_ask *ask, double *out)
+                            const struct dea_gradient_request *ask, double *out)
 {
   struct dea_solid *s = owner->solid;
   struct dea_arena memory = {.ctx = ctx};
@@ -603,7 +603,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
     status = dea_adjoint_create(ctx, s, dea_gradient_width(ask) + 1, &w.adjoint);
     s->work.takes_small_pivots = false;
   }
-  status = status == DEA_OK ? make_room(ctx, &w, &memory) : status;
+  status = status == DEA_OK ? reserve(ctx, &w, &memory) : status;
   status = status == DEA_OK ? prepare_modes(ctx, &w, &memory) : status;
   status = status == DEA_OK ? answer(ctx, &w, &memory) : status;
   status = status == DEA_OK ? find_by_changes(ctx, &w, out) : status;
@@ -674,7 +674,7 @@ static dea_status find_limit(struct dea_context *ctx, struct work *w, double *ou
 
 /* At the state that the ending has kept. */
 static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                                const struct dea_gradient_ask *ask, double *out)
+                                const struct dea_gradient_request *ask, double *out)
 {
   struct dea_solid *s = owner->solid;
   struct dea_gradient_owner there = *owner;
@@ -694,7 +694,7 @@ static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradie
 }
 
 static dea_status find_there(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                             const struct dea_gradient_ask *ask, double *out)
+                             const struct dea_gradient_request *ask, double *out)
 {
   struct dea_solid *s = owner->solid;
   struct dea_solid_saved_state here;
@@ -715,7 +715,7 @@ static dea_status find_there(struct dea_context *ctx, const struct dea_gradient_
 }
 
 dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                             const struct dea_gradient_ask *ask, double *out)
+                             const struct dea_gradient_request *ask, double *out)
 {
   return ask->of_limit ? find_there(ctx, owner, ask, out) : find_here(ctx, owner, ask, out);
 }

@@ -61,16 +61,16 @@ dea_status dea_gradient_film_slope(struct dea_context *ctx, const struct dea_gra
 /* Extremes and, where it is asked for, capacitance of the film as it is now. */
 dea_status dea_gradient_film_at(struct dea_context *ctx, const struct dea_gradient_film *film,
                                 const struct dea_gradient_places *places,
-                                const struct dea_gradient_ask *ask, double voltage_V,
+                                const struct dea_gradient_request *ask, double voltage_V,
                                 struct dea_load_point *out);
 /* Energy without voltage at the unknowns of rest, which are the owner's: u [dofs], followers of
  * bodies are moved, and multipliers. Left as it is where no energy is asked for. */
-dea_status dea_gradient_rest_energy(struct dea_solid *solid, const struct dea_gradient_ask *ask,
+dea_status dea_gradient_rest_energy(struct dea_solid *solid, const struct dea_gradient_request *ask,
                                     double *u, double *multipliers, double *energy_J);
 
 /* Whether it is asked for the frequency of the lowest mode, which needs a mass. */
-bool dea_gradient_asks_mode(const struct dea_gradient_ask *ask);
+bool dea_gradient_asks_mode(const struct dea_gradient_request *ask);
 
 /* `gradient` of struct dea_model_type. The frequency is this file's own. */
 dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                             const struct dea_gradient_ask *ask, double *out);
+                             const struct dea_gradient_request *ask, double *out);

@@ -99,9 +99,9 @@ static dea_status add_shape(struct dea_context *ctx, const struct dea_motions *m
   return status;
 }
 
-static dea_status take_modes(struct dea_context *ctx, const struct dea_motions *m, int ply,
-                             const struct dea_load_point *at, size_t count, double *memory,
-                             struct dea_load_point *points, struct dea_field_mesh **shapes)
+static dea_status get_modes(struct dea_context *ctx, const struct dea_motions *m, int ply,
+                            const struct dea_load_point *at, size_t count, double *memory,
+                            struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
   size_t dofs = 3 * m->grid->node_count;
   double *square = memory, *work = memory + count, *vector = work + 2 * dofs;
@@ -123,7 +123,7 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
   double *memory = dea_solid_alloc(ctx, count + (2 + count) * dofs, sizeof *memory);
   *shapes = NULL;
   DEA_TRY_MEMORY(memory != NULL);
-  dea_status status = take_modes(ctx, m, ply, at, count, memory, points, shapes);
+  dea_status status = get_modes(ctx, m, ply, at, count, memory, points, shapes);
   dea_free(ctx, memory);
   return status;
 }
@@ -157,8 +157,8 @@ static void find_amplitude(const struct dea_motions *m, const char *key, const d
 }
 
 /* Of one frequency, per volt. */
-static dea_status take(struct dea_context *ctx, void *user, size_t i, const double *real,
-                       const double *imaginary)
+static dea_status add_frequency(struct dea_context *ctx, void *user, size_t i, const double *real,
+                                const double *imaginary)
 {
   const struct answers *to = user;
   const struct dea_motions *m = to->motions;
@@ -187,7 +187,7 @@ static dea_status superpose(struct dea_context *ctx, const struct dea_motions *m
     for (size_t n = 0; n < nodes; n++) {
       dea_solid_response_at(response, n, rad_per_s[i], damping, real + 3 * n, imaginary + 3 * n);
     }
-    status = take(ctx, out, i, real, imaginary);
+    status = add_frequency(ctx, out, i, real, imaginary);
   }
   dea_free(ctx, real);
   dea_solid_response_destroy(ctx, response);
@@ -222,7 +222,7 @@ static dea_status solve_each(struct dea_context *ctx, const struct dea_motions *
   struct dea_damping spread = *damping;
   DEA_TRY(ctx, spread_ratio(ctx, m, &spread));
   return DEA_CHAIN(ctx, dea_solid_respond_viscous(ctx, m->solid, m->branches, &spread, rad_per_s,
-                                                  count, take, out));
+                                                  count, add_frequency, out));
 }
 
 dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *m,

@@ -137,8 +137,8 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
 
 /* That it has gone past a limit point of the control, where it has moved to what that was set to.
  */
-static dea_status say_passed(struct dea_context *ctx, struct dea_model *model,
-                             const struct dea_control *control, double limit)
+static dea_status report_passed(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_control *control, double limit)
 {
   bool force = control->kind == DEA_CONTROL_FORCE || control->kind == DEA_CONTROL_CONJUGATE,
        turns = control->component >= 3;
@@ -204,7 +204,7 @@ dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model
   }
   dea_solid_model_note_states(model, model->at.report.snapped);
   if (!isnan(share)) {
-    DEA_TRY(ctx, say_passed(ctx, model, control, limit));
+    DEA_TRY(ctx, report_passed(ctx, model, control, limit));
   } else if (model->at.report.snapped) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: a state at %.4g kV is unstable (buckling or snapping) "

@@ -24,7 +24,7 @@ static int least_through(const struct dea_model *model)
 }
 
 /* What of a coupled field the mesh does not resolve. */
-static dea_status say_coupled(struct dea_context *ctx, const struct dea_model *model)
+static dea_status report_coupled(struct dea_context *ctx, const struct dea_model *model)
 {
   const struct dea_device *d = model->device;
   const int through = least_through(model);
@@ -52,7 +52,7 @@ static dea_status say_coupled(struct dea_context *ctx, const struct dea_model *m
 }
 
 /* What a film without bending leaves out. */
-static dea_status say_membrane(struct dea_context *ctx, const struct dea_model *model)
+static dea_status report_membrane(struct dea_context *ctx, const struct dea_model *model)
 {
   const struct dea_device *d = model->device;
   DEA_TRY(ctx, dea_finding_add(
@@ -71,7 +71,7 @@ static dea_status say_membrane(struct dea_context *ctx, const struct dea_model *
 }
 
 /* What is about to be solved, and what it cannot show. */
-static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *model)
+static dea_status report_mesh(struct dea_context *ctx, const struct dea_model *model)
 {
   const struct dea_grid *grid = model->mesh.grid;
   const bool whole = model->mesh.sector.fold == 0;
@@ -99,12 +99,12 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
                             "(compute.solid.refinement makes it finer)",
                             model->settings.order, grid->order));
   }
-  DEA_TRY(ctx, model->settings.field == DEA_FIELD_COUPLED ? say_coupled(ctx, model) : DEA_OK);
-  return DEA_CHAIN(ctx, model->mesh.membrane ? say_membrane(ctx, model) : DEA_OK);
+  DEA_TRY(ctx, model->settings.field == DEA_FIELD_COUPLED ? report_coupled(ctx, model) : DEA_OK);
+  return DEA_CHAIN(ctx, model->mesh.membrane ? report_membrane(ctx, model) : DEA_OK);
 }
 
 /* Where the weight alone brings the film of a disc. */
-static dea_status say_sag(struct dea_context *ctx, const struct dea_model *model)
+static dea_status report_sag(struct dea_context *ctx, const struct dea_model *model)
 {
   const double centre_z_m = dea_solid_model_centre_z(model, dea_solid_displacement(model->solid));
   if (!isnan(centre_z_m) && dea_solid_has_weight(model->layout)) {
@@ -175,7 +175,7 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
 }
 
 /* A mesh of its own, or that of another model. */
-static dea_status make_mesh(struct dea_context *ctx, struct dea_model *model)
+static dea_status build_mesh(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_model *from = model->settings.mesh_from;
   if (model->device->disc) {
@@ -197,7 +197,7 @@ static dea_status make_mesh(struct dea_context *ctx, struct dea_model *model)
 }
 
 /* What belongs to the mesh: its layout, and where on it things are. */
-void dea_solid_model_look_at_mesh(struct dea_model *model)
+void dea_solid_model_check_mesh(struct dea_model *model)
 {
   const struct dea_layout_mesh *mesh = &model->mesh;
   model->layout = mesh->layout;
@@ -222,21 +222,21 @@ dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_dev
   model->pressure_factor = 1;
   DEA_TRY(ctx, dea_solid_start(ctx));
   DEA_TRY(ctx,
-          dea_solid_allreduce(ctx, make_mesh(ctx, model))); // gmsh may be ended on one rank alone
-  dea_solid_model_look_at_mesh(model);
+          dea_solid_allreduce(ctx, build_mesh(ctx, model))); // gmsh may be ended on one rank alone
+  dea_solid_model_check_mesh(model);
   model->answer =
       dea_arena_alloc(&model->memory, model->layout->monitor_count * DEA_OBSERVED_MOTIONS + 1,
                       sizeof *model->answer);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   model->copies = (double)dea_layout_sector_copies(&model->mesh.sector);
-  DEA_TRY(ctx, say_mesh(ctx, model));
+  DEA_TRY(ctx, report_mesh(ctx, model));
   DEA_TRY(ctx, dea_plies_create(ctx, &model->mesh, &model->memory, &model->plies));
   dea_solid_model_find_band(model);
   DEA_TRY(ctx, dea_solid_model_assemble(ctx, model));
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, &model->observer));
   DEA_TRY(ctx, dea_solid_loads_release(ctx, model));
   DEA_TRY(ctx, keep_rest(ctx, model));
-  return DEA_CHAIN(ctx, say_sag(ctx, model));
+  return DEA_CHAIN(ctx, report_sag(ctx, model));
 }
 
 /* Loads, mesh and arrays. */

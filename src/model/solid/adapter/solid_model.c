@@ -98,7 +98,7 @@ static dea_status save(struct dea_context *ctx, struct dea_model *model, struct 
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
-  DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, out));
+  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, out));
   if (model->at.driven != NULL) {
     dea_observer_set_currents(model->observer, dea_circuit_step_currents_A(model->at.driven));
   }
@@ -128,8 +128,8 @@ static dea_status find_motions(struct dea_context *ctx, const struct dea_model *
 }
 
 /* Monitors of the answer at one frequency, per volt. */
-static dea_status take_answer(struct dea_context *ctx, void *user, size_t i, const double *real,
-                              const double *imaginary)
+static dea_status get_answer(struct dea_context *ctx, void *user, size_t i, const double *real,
+                             const double *imaginary)
 {
   const struct dea_model *model = user;
   size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
@@ -161,7 +161,7 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
                     "ideal electrodes");
   }
   DEA_TRY(ctx, find_motions(ctx, model, &motions));
-  motions.take = width > 0 ? take_answer : NULL;
+  motions.take = width > 0 ? get_answer : NULL;
   motions.user = model;
   dea_solid_liquids_stiffen(model, true);
   const dea_status status =
@@ -180,8 +180,8 @@ static const double *answers(const struct dea_model *model)
 }
 
 /* All copies of the sector in the place of *mesh; that of a disc says how it is to be unfolded. */
-static dea_status make_whole(struct dea_context *ctx, const struct dea_model *model,
-                             struct dea_field_mesh **mesh)
+static dea_status build_whole(struct dea_context *ctx, const struct dea_model *model,
+                              struct dea_field_mesh **mesh)
 {
   const struct dea_layout_sector *sector = &model->mesh.sector;
   struct dea_field_mesh *part = *mesh, *whole = NULL;
@@ -220,7 +220,7 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
       dea_motions_modes(ctx, &motions, (int)model->plies.film, at, count, points, shapes);
   dea_solid_liquids_stiffen(model, false);
   DEA_TRY(ctx, status);
-  return DEA_CHAIN(ctx, make_whole(ctx, model, shapes));
+  return DEA_CHAIN(ctx, build_whole(ctx, model, shapes));
 }
 
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
@@ -229,7 +229,7 @@ static dea_status fields(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
                    ? dea_solid_volume(ctx, model->solid, out)
                    : dea_solid_surface(ctx, model->solid, (int)model->plies.film, out));
-  return DEA_CHAIN(ctx, make_whole(ctx, model, out));
+  return DEA_CHAIN(ctx, build_whole(ctx, model, out));
 }
 
 /* Of a disc: along the first fibre's axis and halfway between it and the next. Of others: none. */
@@ -358,7 +358,7 @@ static dea_status errors(struct dea_context *ctx, struct dea_model *model, doubl
   struct dea_load_point point;
   struct dea_observation seen;
   DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, &point));
-  DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
+  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
   for (size_t i = 0; i < seen.monitor_count; i++) {
     error[i] = NAN;
   }
@@ -387,11 +387,11 @@ struct adaptation {
   size_t next_count;
 };
 
-static dea_status make(struct dea_context *ctx, const struct dea_device *device,
-                       const struct dea_model_settings *settings, struct dea_model **out)
+static dea_status build(struct dea_context *ctx, const struct dea_device *device,
+                        const struct dea_model_settings *settings, struct dea_model **out)
 {
-  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, dea_solid_model_prepare,
-                              dea_solid_model_destroy, out));
+  DEA_TRY(ctx, dea_model_build(ctx, sizeof **out, device, settings, dea_solid_model_prepare,
+                               dea_solid_model_destroy, out));
   struct dea_model *model = *out;
   const struct dea_layout_ply *film = &model->layout->plies[model->plies.film];
   model->at.outcome.owner = (struct dea_step_outcome_owner){
@@ -410,14 +410,14 @@ static dea_status make(struct dea_context *ctx, const struct dea_device *device,
 }
 
 /* The error on a mesh at the voltage, and the sizes of the next one. */
-static dea_status look_at_mesh(struct dea_context *ctx, struct adaptation *a,
-                               struct dea_model *model, struct dea_adapt_pass *pass)
+static dea_status estimate_mesh_error(struct dea_context *ctx, struct adaptation *a,
+                                      struct dea_model *model, struct dea_adapt_pass *pass)
 {
   struct dea_load_point point;
   struct dea_observation seen;
   const struct dea_grid *grid = model->mesh.grid;
   DEA_TRY(ctx, dea_solver_state_solve(ctx, model, a->settings.adapt.voltage_V, &point));
-  DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
+  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
   const double *values = seen.monitor[a->monitor];
   enum dea_observed motion = dea_observed_main(values);
   bool ratio = motion == DEA_OBSERVED_STRETCH || motion == DEA_OBSERVED_AREA_STRETCH;
@@ -460,7 +460,7 @@ static dea_status find_monitor(struct dea_context *ctx, struct adaptation *a)
 }
 
 /* Where the error of a mesh is not known the last one is as good as any. */
-static dea_status say_end(struct dea_context *ctx, const struct adaptation *a)
+static dea_status report_end(struct dea_context *ctx, const struct adaptation *a)
 {
   const struct dea_adapt_pass *last = &a->pass[a->count - 1];
   if (!isnan(last->error) && last->within) {
@@ -476,12 +476,12 @@ static dea_status say_end(struct dea_context *ctx, const struct adaptation *a)
 }
 
 /* Another model, on a mesh of the present sizes, in the place of *model. */
-static dea_status make_anew(struct dea_context *ctx, const struct adaptation *a,
-                            struct dea_model **model)
+static dea_status build_anew(struct dea_context *ctx, const struct adaptation *a,
+                             struct dea_model **model)
 {
   dea_solid_model_destroy(ctx, *model);
   *model = NULL;
-  return DEA_CHAIN(ctx, make(ctx, a->device, &a->settings, model));
+  return DEA_CHAIN(ctx, build(ctx, a->device, &a->settings, model));
 }
 
 /* To the mesh that is exact enough; *model: on it, at rest. */
@@ -492,7 +492,7 @@ static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct de
   DEA_TRY_MEMORY(a->pass != NULL);
   for (bool on = true; on;) {
     struct dea_adapt_pass *pass = &a->pass[a->count];
-    DEA_TRY(ctx, look_at_mesh(ctx, a, *model, pass));
+    DEA_TRY(ctx, estimate_mesh_error(ctx, a, *model, pass));
     a->count++;
     on = a->count < most && !pass->within && !isnan(pass->error);
     if (on) {
@@ -502,9 +502,9 @@ static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct de
       a->settings.sizes = (const double(*)[3])a->now;
       a->settings.size_count = a->next_count;
     }
-    DEA_TRY(ctx, make_anew(ctx, a, model)); // the last one too: to be at rest
+    DEA_TRY(ctx, build_anew(ctx, a, model)); // the last one too: to be at rest
   }
-  return DEA_CHAIN(ctx, say_end(ctx, a));
+  return DEA_CHAIN(ctx, report_end(ctx, a));
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
@@ -515,7 +515,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   bool asked = a.settings.adapt.monitor != NULL;
   *out = NULL;
   dea_status status = asked ? find_monitor(ctx, &a) : DEA_OK;
-  status = status == DEA_OK ? make(ctx, device, &a.settings, out) : status;
+  status = status == DEA_OK ? build(ctx, device, &a.settings, out) : status;
   if (asked && status == DEA_OK) {
     status = adapt(ctx, &a, out);
   }

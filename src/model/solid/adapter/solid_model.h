@@ -81,7 +81,7 @@ struct dea_model_variant {
   enum dea_observed *motion; // [monitor_count of the question]
   struct dea_indent *indent; // of the changed device or tip; NULL: none
   struct dea_gradient_places places;
-  const struct dea_gradient_ask *ask;
+  const struct dea_gradient_request *ask;
 };
 
 /* A height of what may bend, and the two nodes in whose middle it is. */
@@ -127,7 +127,7 @@ dea_status dea_solid_model_arrived(struct dea_context *ctx, void *self, double v
 
 // solid_make.c: from a device to its solid at rest
 dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *model);
-void dea_solid_model_look_at_mesh(struct dea_model *model);
+void dea_solid_model_check_mesh(struct dea_model *model);
 void dea_solid_model_find_band(struct dea_model *model);
 void dea_solid_model_free_parts(struct dea_context *ctx, struct dea_model *model);
 dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_device *device,
@@ -148,4 +148,4 @@ dea_status dea_solid_model_advance(struct dea_context *ctx, struct dea_model *mo
 
 // solid_variant.c: slopes by changed devices under the solid
 dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *model,
-                                    const struct dea_gradient_ask *ask, double *out);
+                                    const struct dea_gradient_request *ask, double *out);

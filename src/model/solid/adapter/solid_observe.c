@@ -620,7 +620,7 @@ static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
   }
 }
 
-dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
+dea_status dea_observer_read(struct dea_context *ctx, struct dea_observer *o,
                              struct dea_solid *solid, struct dea_observation *out)
 {
   const struct dea_layout *l = o->mesh->layout;

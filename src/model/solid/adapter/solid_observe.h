@@ -16,7 +16,7 @@ dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_
                                struct dea_pressure *const *pressures, struct dea_observer **out);
 void dea_observer_destroy(struct dea_context *ctx, struct dea_observer *observer);
 /* *out lends from the observer until the next call. */
-dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *observer,
+dea_status dea_observer_read(struct dea_context *ctx, struct dea_observer *observer,
                              struct dea_solid *solid, struct dea_observation *out);
 
 /* Puts the currents of the channels' sources, [channels of the layout], into what was taken. */

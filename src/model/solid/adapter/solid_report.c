@@ -125,7 +125,7 @@ static double middle_z(const struct dea_model *model)
 }
 
 /* To the side that the design asks for, where there is a state. */
-static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
+static dea_status set_side(struct dea_context *ctx, struct dea_model *model)
 {
   bool moved;
   double before_m = middle_z(model);
@@ -133,8 +133,8 @@ static dea_status take_side(struct dea_context *ctx, struct dea_model *model)
     return DEA_OK;
   }
   DEA_TRY(ctx,
-          dea_buckling_branch_take(ctx, model->solid, model->mesh.grid, &model->band,
-                                   model->settings.buckling_branch, &model->at.report, &moved));
+          dea_buckling_branch_select(ctx, model->solid, model->mesh.grid, &model->band,
+                                     model->settings.buckling_branch, &model->at.report, &moved));
   if (moved) {
     model->at.left_a_state = true;
     DEA_TRY(ctx,
@@ -151,5 +151,5 @@ dea_status dea_solid_model_arrived(struct dea_context *ctx, void *self, double v
   struct dea_model *model = self;
   model->at.voltage_V = voltage_V;
   dea_solid_model_note_states(model, model->at.report.snapped);
-  return DEA_CHAIN(ctx, take_side(ctx, model));
+  return DEA_CHAIN(ctx, set_side(ctx, model));
 }

@@ -83,12 +83,12 @@ static void keep_controls(struct dea_model *model)
 }
 
 /* Mesh, part materials and loads of a changed device, with a solid that has them. */
-static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
+static dea_status build_variant(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_model *own = &model->variant->own;
   DEA_TRY(ctx,
           dea_device_mesh_follow(ctx, model->device, &model->settings, &own->mesh, &model->mesh));
-  dea_solid_model_look_at_mesh(model);
+  dea_solid_model_check_mesh(model);
   if (!same_supports(model->layout, own->layout)) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a change of what is held");
   }
@@ -157,7 +157,7 @@ static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
   model->springs = NULL;
   model->pressures = NULL;
   model->surfaces = NULL;
-  dea_status status = make_variant(ctx, model);
+  dea_status status = build_variant(ctx, model);
   v->solid = model->solid;
   model->solid = s;
   DEA_TRY(ctx, status);
@@ -260,12 +260,12 @@ static dea_status monitor_slope(struct dea_context *ctx, void *self, size_t i, d
   return DEA_OK;
 }
 
-static dea_status take_monitors(struct dea_context *ctx, void *self, double *out)
+static dea_status get_monitors(struct dea_context *ctx, void *self, double *out)
 {
   struct dea_model *model = self;
   const struct dea_model_variant *v = model->variant;
   struct dea_observation seen;
-  DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
+  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
   for (size_t i = 0; i < v->ask->monitor_count; i++) {
     out[i] = seen.monitor[v->ask->monitors[i]][v->motion[i]];
   }
@@ -332,7 +332,7 @@ static dea_status find_asked_motions(struct dea_context *ctx, struct dea_model *
   const struct dea_model_variant *v = model->variant;
   struct dea_observation seen;
   if (v->ask->monitor_count > 0) {
-    DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
+    DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
     for (size_t i = 0; i < v->ask->monitor_count; i++) {
       v->motion[i] = v->ask->motions != NULL ? v->ask->motions[i]
                                              : dea_observed_main(seen.monitor[v->ask->monitors[i]]);
@@ -342,7 +342,7 @@ static dea_status find_asked_motions(struct dea_context *ctx, struct dea_model *
 }
 
 static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model,
-                                const struct dea_gradient_ask *ask, double *out)
+                                const struct dea_gradient_request *ask, double *out)
 {
   struct dea_model_variant *v = model->variant;
   struct dea_solid *s = model->solid;
@@ -352,7 +352,7 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
                                            .voltage_V = model->at.voltage_V,
                                            .slope = slope,
                                            .monitor_slope = monitor_slope,
-                                           .monitors = take_monitors,
+                                           .monitors = get_monitors,
                                            .enter = enter,
                                            .hold = model->indent != NULL ? hold_tip : NULL,
                                            .leave = leave,
@@ -369,7 +369,7 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
 }
 
 dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *model,
-                                    const struct dea_gradient_ask *ask, double *out)
+                                    const struct dea_gradient_request *ask, double *out)
 {
   struct dea_arena memory = {.ctx = ctx};
   const struct dea_solid_problem *p = &model->solid->problem;

@@ -124,7 +124,7 @@ static dea_status path_event(struct dea_context *ctx, struct dea_solver_state *s
 }
 
 /* A point of a path into its sink. */
-static dea_status put_point(struct dea_context *ctx, struct dea_solver_state *solver_state,
+static dea_status add_point(struct dea_context *ctx, struct dea_solver_state *solver_state,
                             const struct dea_continuation_point *at, const struct path_sinks *sinks)
 {
   struct dea_load_point point;
@@ -133,20 +133,20 @@ static dea_status put_point(struct dea_context *ctx, struct dea_solver_state *so
 }
 
 /* The point where the step ends, or the path within it. */
-static dea_status take_step(struct dea_context *ctx, struct dea_solver_state *solver_state,
-                            struct dea_solid_continuation *path, struct dea_continuation_point *at,
-                            const struct path_sinks *sinks, bool *ended)
+static dea_status solve_step(struct dea_context *ctx, struct dea_solver_state *solver_state,
+                             struct dea_solid_continuation *path, struct dea_continuation_point *at,
+                             const struct path_sinks *sinks, bool *ended)
 {
   const struct dea_solver_state_end *end = sinks->end;
   const struct dea_continuation_point step = *at;
   *ended = beyond(solver_state, end) >= 0;
-  DEA_TRY(ctx, !*ended ? put_point(ctx, solver_state, at, sinks) : DEA_OK);
+  DEA_TRY(ctx, !*ended ? add_point(ctx, solver_state, at, sinks) : DEA_OK);
   if (step.passed != DEA_CONTINUATION_NOTHING) {
     DEA_TRY(ctx, path_event(ctx, solver_state, path, sinks, &step));
   }
   if (*ended) {
     DEA_TRY(ctx, dea_solid_continuation_across(ctx, path, end->weight, end->value, at));
-    DEA_TRY(ctx, put_point(ctx, solver_state, at, sinks));
+    DEA_TRY(ctx, add_point(ctx, solver_state, at, sinks));
   }
   solver_state->voltage_V = at->voltage_V;
   *ended = *ended || at->voltage_V >= sinks->options->max_voltage_V;
@@ -169,7 +169,7 @@ static dea_status follow_path(struct dea_context *ctx, struct dea_solver_state *
       return DEA_OK;
     }
     DEA_TRY(ctx, status);
-    DEA_TRY(ctx, take_step(ctx, solver_state, path, &at, sinks, &ended));
+    DEA_TRY(ctx, solve_step(ctx, solver_state, path, &at, sinks, &ended));
   }
   return DEA_OK;
 }

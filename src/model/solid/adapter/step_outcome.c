@@ -48,7 +48,7 @@ static dea_status evaluate_film(struct dea_context *ctx, struct dea_step_outcome
 
 /* Keeps the smallest tension where the solid is, which tells where the film goes slack, and its
  * largest area stretch. */
-static dea_status look_at_tension(struct dea_context *ctx, struct dea_step_outcome *e)
+static dea_status check_tension(struct dea_context *ctx, struct dea_step_outcome *e)
 {
   double V = dea_solid_voltage(e->owner.solid);
   DEA_TRY(ctx, evaluate_film(ctx, e));
@@ -69,8 +69,8 @@ static bool is_taut(const struct dea_step_outcome *e)
 }
 
 /* The point where the solid is, as the event at which a solve ends. */
-static dea_status take_event(struct dea_context *ctx, struct dea_step_outcome *e,
-                             enum dea_event_kind kind)
+static dea_status get_event(struct dea_context *ctx, struct dea_step_outcome *e,
+                            enum dea_event_kind kind)
 {
   dea_status status =
       e->owner.point(ctx, e->owner.model, dea_solid_voltage(e->owner.solid), &e->limit.point);
@@ -102,13 +102,14 @@ static double slack_V(const struct dea_step_outcome *e, int first)
 
 /* Whether the tension of the film, which no step leads on from, is 0 closely beyond by its last two
  * points: the voltage of that as an event. */
-static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_step_outcome *e, bool *slack)
+static dea_status observe_slack_beyond(struct dea_context *ctx, struct dea_step_outcome *e,
+                                       bool *slack)
 {
   const double V = dea_solid_voltage(e->owner.solid), beyond = slack_V(e, 1);
   const double near = 1 + dea_branch_jump_width;
   *slack = e->tension_V[2] == V && e->tension_V[1] != V && beyond >= V && beyond <= near * V;
   if (*slack) {
-    DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
+    DEA_TRY(ctx, get_event(ctx, e, DEA_EVENT_SLACK));
     e->limit.point.voltage_V = beyond;
   }
   return DEA_OK;
@@ -116,7 +117,7 @@ static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_step_outc
 
 /* A point of the path on the way to where a solve ends. Where the film goes slack between two of
  * them: the voltage from their tensions, or those of the two before. */
-static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
+static dea_status observe_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
 {
   struct dea_step_outcome *e = user;
   double V = dea_solid_voltage(e->owner.solid);
@@ -128,33 +129,33 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
   }
   if (where == DEA_STOP_PASSED) {
     e->limited = false;
-    return look_at_tension(ctx, e);
+    return check_tension(ctx, e);
   }
   if (where == DEA_STOP_NEAR && !e->grew) {
     bool slack;
-    dea_status status = see_slack_beyond(ctx, e, &slack);
+    dea_status status = observe_slack_beyond(ctx, e, &slack);
     if (status != DEA_OK || slack) { // it has no tension there
       return status;
     }
   }
   if (where == DEA_STOP_LIMIT || where == DEA_STOP_NEAR || (where == DEA_STOP_UNSTABLE && thins)) {
-    return take_event(ctx, e, V >= e->from_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
+    return get_event(ctx, e, V >= e->from_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
   }
   if (where == DEA_STOP_UNSTABLE) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, look_at_tension(ctx, e));
+  DEA_TRY(ctx, check_tension(ctx, e));
   if (before && !is_taut(e) && !e->limited) {
     const double first_V = e->tension_V[1], last_V = e->tension_V[2];
     const bool compressed = e->tension[2] < -no_tension * e->owner.tension_scale_N_per_m;
     const double at_V = slack_V(e, compressed ? 1 : 0); // a membrane has none from there on
-    DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
+    DEA_TRY(ctx, get_event(ctx, e, DEA_EVENT_SLACK));
     e->limit.point.voltage_V = fmin(fmax(at_V, fmin(first_V, last_V)), fmax(first_V, last_V));
   }
   return DEA_OK;
 }
 
-static dea_status see_change(struct dea_context *ctx, void *user, struct dea_solid_change *out)
+static dea_status observe_change(struct dea_context *ctx, void *user, struct dea_solid_change *out)
 {
   struct dea_step_outcome *e = user;
   DEA_TRY(ctx, evaluate_film(ctx, e));
@@ -212,8 +213,8 @@ static dea_status stopped(struct dea_context *ctx, struct dea_step_outcome *e, d
   bool unsettled = stop->kind == DEA_STOP_UNSTABLE || status == DEA_E_NOT_CONVERGED;
   if (status == DEA_E_NOT_CONVERGED && !e->limited) {
     bool slack;
-    dea_status seen = look_at_tension(ctx, e);
-    seen = seen == DEA_OK ? see_slack_beyond(ctx, e, &slack) : seen;
+    dea_status seen = check_tension(ctx, e);
+    seen = seen == DEA_OK ? observe_slack_beyond(ctx, e, &slack) : seen;
     if (seen != DEA_OK && !dea_solid_may_shorten(seen)) {
       return dea_fail_chain(ctx, seen, __func__, __FILE__, __LINE__);
     }
@@ -253,7 +254,7 @@ static dea_status refuse_thin(struct dea_context *ctx, struct dea_step_outcome *
   e->limited = true;
   e->has_passed = false;
   dea_solid_restore_state(e->owner.solid, from);
-  DEA_TRY(ctx, look_at_tension(ctx, e));
+  DEA_TRY(ctx, check_tension(ctx, e));
   if (!isnan(e->limit.point.electrode_stretch)) {
     snprintf(stretch, sizeof stretch, " and an electrode stretch of %.5g",
              e->limit.point.electrode_stretch);
@@ -269,10 +270,10 @@ static dea_status approach(struct dea_context *ctx, struct dea_step_outcome *e, 
                            struct dea_solid_report *report, struct dea_solid_stop *stop,
                            bool *passed)
 {
-  const struct dea_solid_watch watch = {see_point, see_change, was_taut, e};
+  const struct dea_solid_watch watch = {observe_point, observe_change, was_taut, e};
   e->from_V = dea_solid_voltage(e->owner.solid);
   e->limited = e->grew = *passed = false;
-  DEA_TRY(ctx, look_at_tension(ctx, e));
+  DEA_TRY(ctx, check_tension(ctx, e));
   e->from_area = e->area;
   const bool taut = is_taut(e);
   dea_status status =
@@ -289,7 +290,7 @@ static dea_status approach(struct dea_context *ctx, struct dea_step_outcome *e, 
     drop_limit(e);
   }
   e->limited = false;
-  return look_at_tension(ctx, e);
+  return check_tension(ctx, e);
 }
 
 /* One load step. */
@@ -307,7 +308,7 @@ static dea_status step(struct dea_context *ctx, struct dea_step_outcome *e, doub
     const bool thin =
         e->owner.membrane && !is_taut(e) && e->area > branch_jump * fmax(e->from_area, 1);
     status = thin ? refuse_thin(ctx, e, voltage_V, &from)
-                  : dea_model_say_passed(ctx, "3d", e->from_V, voltage_V, &e->limit);
+                  : dea_model_report_passed(ctx, "3d", e->from_V, voltage_V, &e->limit);
   }
   dea_solid_saved_state_free(&from);
   return status;
@@ -326,7 +327,7 @@ dea_status dea_step_outcome_move(struct dea_context *ctx, struct dea_step_outcom
 }
 
 /* Where the way to a voltage has turned unstable and the solid has gone down from it. */
-static dea_status say_snap(struct dea_context *ctx, double voltage_V)
+static dea_status report_snap(struct dea_context *ctx, double voltage_V)
 {
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                          "model 3d: the state on the way to %.4g kV is unstable (buckling or "
@@ -351,7 +352,7 @@ dea_status dea_step_outcome_go(struct dea_context *ctx, struct dea_step_outcome 
     double next_V = i == steps ? voltage_V : from_V + way * i / steps;
     DEA_TRY(ctx, step(ctx, e, next_V, report));
     at_V = next_V;
-    DEA_TRY(ctx, report->snapped ? say_snap(ctx, at_V) : DEA_OK);
+    DEA_TRY(ctx, report->snapped ? report_snap(ctx, at_V) : DEA_OK);
     DEA_TRY(ctx, e->owner.arrived(ctx, e->owner.model, at_V));
   }
   return DEA_OK;

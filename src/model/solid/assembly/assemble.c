@@ -387,7 +387,7 @@ static dea_status collect(struct dea_context *ctx, struct dea_solid *s, enum dea
 }
 
 /* What loads add beside K at the state: stiffness and slope (rank_one.h). */
-static dea_status take_rank_ones(struct dea_context *ctx, struct dea_solid *s)
+static dea_status get_rank_ones(struct dea_context *ctx, struct dea_solid *s)
 {
   struct dea_solid_rank_one *r = &s->work.rank_one;
   r->count = 0;
@@ -444,7 +444,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   DEA_TRY(ctx, collect(ctx, s, level, energy));
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx, add_springs(ctx, s));
-    DEA_TRY(ctx, take_rank_ones(ctx, s));
+    DEA_TRY(ctx, get_rank_ones(ctx, s));
   }
   return DEA_OK;
 }

@@ -179,8 +179,8 @@ static dea_status reach_of(const struct dea_solid *s, size_t e, const struct dea
     dea_part_material_pull_back(in.part_material, plane, plane);
     double root = hypot(0.5 * (plane[0] - plane[1]), plane[2]);
     double middle = 0.5 * (plane[0] + plane[1]);
-    dea_reach_take(&out->reach, dea_material_reach(material, sqrt(middle + root),
-                                                   sqrt(fmax(middle - root, 1e-30))));
+    dea_reach_merge(&out->reach, dea_material_reach(material, sqrt(middle + root),
+                                                    sqrt(fmax(middle - root, 1e-30))));
   }
   return status;
 }

@@ -248,7 +248,7 @@ static size_t count_fronts(struct analysis *a)
   return (size_t)count;
 }
 
-static dea_status make_fronts(struct dea_context *ctx, struct analysis *a, struct dea_fronts *f)
+static dea_status build_fronts(struct dea_context *ctx, struct analysis *a, struct dea_fronts *f)
 {
   f->count = count_fronts(a);
   f->fronts = dea_arena_alloc(&f->memory, f->count + 1, sizeof *f->fronts);
@@ -344,7 +344,7 @@ static size_t update_size(const struct front *front)
 
 /* Memory of the factor; the largest that waits at a time. A front's update is made on one stack
  * while those of its children, the last on the other, are taken from there. */
-static dea_status make_room(struct dea_context *ctx, struct dea_fronts *f)
+static dea_status reserve(struct dea_context *ctx, struct dea_fronts *f)
 {
   size_t rows = 0, own = 0, depth[2] = {0, 0}, deepest[2] = {0, 0}, waiting = 0;
   f->waiting = dea_arena_alloc(&f->memory, f->count, sizeof *f->waiting);
@@ -398,10 +398,10 @@ static dea_status analyse(struct dea_context *ctx, struct analysis *a, struct de
   order_by_tree(a, work);
   find_places(a, f->place);
   DEA_TRY(ctx, find_rows(ctx, a, f->place, work));
-  DEA_TRY(ctx, make_fronts(ctx, a, f));
+  DEA_TRY(ctx, build_fronts(ctx, a, f));
   link_fronts(f, work);
   place_blocks(a, f, work, next);
-  return DEA_CHAIN(ctx, make_room(ctx, f));
+  return DEA_CHAIN(ctx, reserve(ctx, f));
 }
 
 static double count_entries(Mat K)
@@ -490,7 +490,7 @@ static void add_update(struct dea_fronts *f, const struct front *front, const st
 }
 
 /* What waits for this front, off the other stack; *depth: what is left of that. */
-static void take_updates(struct dea_fronts *f, size_t number, size_t *waiting, size_t *depth)
+static void pop_updates(struct dea_fronts *f, size_t number, size_t *waiting, size_t *depth)
 {
   const struct front *front = &f->fronts[number];
   const size_t beyond = (size_t)(front->rows - front->own);
@@ -599,7 +599,7 @@ static int factorise(struct dea_fronts *f, const double *K, int most)
     f->update = f->stack[front->side] + depth[front->side];
     depth[front->side] += update_size(front);
     fill_panel(f, front, K);
-    take_updates(f, n, &waiting, &depth[!front->side]);
+    pop_updates(f, n, &waiting, &depth[!front->side]);
     eliminate(f, front, &of_front);
     if (of_front < 0) {
       return -1;

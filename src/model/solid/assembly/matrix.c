@@ -549,7 +549,7 @@ dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, 
 }
 
 /* Columns of right into those of a dense matrix, or its columns into those of out. */
-static dea_status put_columns(struct dea_context *ctx, struct dea_solid *s, size_t count,
+static dea_status set_columns(struct dea_context *ctx, struct dea_solid *s, size_t count,
                               double *right, Mat columns)
 {
   for (size_t k = 0; k < count; k++) {
@@ -563,8 +563,8 @@ static dea_status put_columns(struct dea_context *ctx, struct dea_solid *s, size
   return DEA_OK;
 }
 
-static dea_status take_columns(struct dea_context *ctx, struct dea_solid *s, size_t count,
-                               Mat columns, double *out)
+static dea_status get_columns(struct dea_context *ctx, struct dea_solid *s, size_t count,
+                              Mat columns, double *out)
 {
   for (size_t k = 0; k < count; k++) {
     Vec column;
@@ -584,9 +584,9 @@ static dea_status solve_block(struct dea_context *ctx, struct dea_solid *s, size
   for (int k = 0; k < 2; k++) {
     DEA_PETSC(ctx, MatCreateSeqDense(PETSC_COMM_SELF, rows, (PetscInt)count, NULL, &sides[k]));
   }
-  DEA_TRY(ctx, put_columns(ctx, s, count, right, sides[0]));
+  DEA_TRY(ctx, set_columns(ctx, s, count, right, sides[0]));
   DEA_PETSC(ctx, MatMatSolve(s->work.factor, sides[0], sides[1]));
-  return DEA_CHAIN(ctx, take_columns(ctx, s, count, sides[1], out));
+  return DEA_CHAIN(ctx, get_columns(ctx, s, count, sides[1], out));
 }
 
 dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, size_t count,

@@ -28,9 +28,9 @@ static void start_mpi_alone(void)
 }
 
 /* PETSc 3.18 mixes up what it says of memory that runs out: the code where the line should be. */
-static PetscErrorCode give_code(MPI_Comm comm, int line, const char *function, const char *file,
-                                PetscErrorCode code, PetscErrorType type, const char *message,
-                                void *self)
+static PetscErrorCode return_code(MPI_Comm comm, int line, const char *function, const char *file,
+                                  PetscErrorCode code, PetscErrorType type, const char *message,
+                                  void *self)
 {
   (void)comm;
   (void)file;
@@ -89,7 +89,7 @@ dea_status dea_solid_start(struct dea_context *ctx)
   if (SlepcInitializeNoArguments() != 0) {
     return dea_fail(ctx, DEA_E_TOOL, "SLEPc could not be started");
   }
-  PetscPushErrorHandler(give_code, NULL);
+  PetscPushErrorHandler(return_code, NULL);
   agree_on_interruptions(ctx);
   DEA_TRY(ctx, dea_solid_allreduce(ctx, start_blas(ctx)));
   if (rank_count() > 1 &&

@@ -259,7 +259,7 @@ static double size_of(const struct dea_adjoint *a, size_t number, double change[
 }
 
 /* left -= L^-1 Q_p. */
-static void take_pressures(struct dea_adjoint *a, size_t number)
+static void get_pressures(struct dea_adjoint *a, size_t number)
 {
   const struct dea_solid_problem *p = &a->s->problem;
   const double *pull = a->pull + number * a->all;
@@ -300,7 +300,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_adjoint *a, size_t c
     a->before[n] = a->largest[n][OF_ELEMENTS] = a->largest[n][OF_LOADS] = 0;
     memcpy(a->lambda + n * a->dofs, a->way + k * a->dofs, a->dofs * sizeof(double));
     squeeze(a, a->lambda + n * a->dofs, a->left + n * a->all);
-    take_pressures(a, n);
+    get_pressures(a, n);
   }
   return DEA_OK;
 }
@@ -404,7 +404,7 @@ double dea_adjoint_pair(struct dea_adjoint *a, size_t answer, size_t number)
   const double *nu = a->nu + answer * a->all;
   double sum = dea_solid_dot(a->s, dea_adjoint_answer(a, answer), dea_adjoint_slope(a, number));
   memset(left, 0, a->all * sizeof *left);
-  take_pressures(a, number);
+  get_pressures(a, number);
   for (size_t i = 0; i < a->all; i++) {
     sum -= nu[i] * left[i];
   }

@@ -217,7 +217,7 @@ static void bend(struct follow *w)
 }
 
 /* For the next one, that the solid has come from the start to where it is. */
-static void keep_way(struct follow *w)
+static void save_step(struct follow *w)
 {
   struct dea_load_steps *path = &w->s->work.load_steps;
   double V = w->s->state.voltage_V;
@@ -420,7 +420,7 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
 }
 
 /* Multipliers with which the pressures at x are q. */
-static void give_back(struct follow *w)
+static void restore_state(struct follow *w)
 {
   set(w, w->x);
   for (size_t i = 0; i < w->pressures; i++) {
@@ -460,7 +460,7 @@ static dea_status iterate_all(struct dea_context *ctx, struct follow *w, bool *t
     status = iterate(ctx, w, k, there, &ends);
   }
   if (*there) {
-    give_back(w);
+    restore_state(w);
   } else {
     dea_solid_state_set(w->s, w->keep);
   }
@@ -468,7 +468,7 @@ static dea_status iterate_all(struct dea_context *ctx, struct follow *w, bool *t
 }
 
 /* A step with the new factor and the force that was found along with it: Newton's own. */
-static dea_status take_last_step(struct dea_context *ctx, struct follow *w)
+static dea_status solve_last_step(struct dea_context *ctx, struct follow *w)
 {
   struct dea_solid *s = w->s;
   bool stiff = s->found.stiff_factor_fits;
@@ -497,7 +497,7 @@ static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
 {
   struct dea_solid *s = w->s;
   dea_status status = dea_solid_count_unstable(ctx, s, false, w->report);
-  status = status == DEA_OK && w->report->unstable_modes == 0 ? take_last_step(ctx, w) : status;
+  status = status == DEA_OK && w->report->unstable_modes == 0 ? solve_last_step(ctx, w) : status;
   *there = status == DEA_OK && w->report->unstable_modes == 0;
   if (*there) {
     w->report->load_error = dea_solid_update_loads(s);
@@ -537,7 +537,7 @@ dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double
   dea_context_counters(ctx)->load_steps += status == DEA_OK && *there;
   dea_context_counters(ctx)->rejected_steps += !*there;
   if (status == DEA_OK && *there) {
-    keep_way(&w);
+    save_step(&w);
   }
   if (rate != NULL) {
     *rate = w.rate;

@@ -290,8 +290,8 @@ static void choose_softness(struct dea_solid *s, struct newton *d, bool soft)
 }
 
 /* Takes the share of the step, with the stresses and the pressures that go with it. */
-static dea_status take_step(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
-                            double share, bool stresses)
+static dea_status apply_step(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
+                             double share, bool stresses)
 {
   bool pressures = d->shift_Pa <= s->problem.modulus_Pa;
   if (!d->strict) {
@@ -324,7 +324,7 @@ static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struc
   d->chords++;
   d->report->corrections++;
   dea_context_counters(ctx)->newton_iterations++;
-  return take_step(ctx, s, d, 1, false);
+  return apply_step(ctx, s, d, 1, false);
 }
 
 /* A step with the tangent at hand, or from the last equilibrium along the tangent of its path.
@@ -356,7 +356,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
               ? d->stuck + 1
               : 0;
       d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
-      DEA_TRY(ctx, take_step(ctx, s, d, share, !*done));
+      DEA_TRY(ctx, apply_step(ctx, s, d, share, !*done));
       if (start) {
         return DEA_OK;
       }
@@ -518,7 +518,7 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
         s->work.step[i] = s->work.trial[i] - s->state.u[i];
       }
       dea_solid_predict_tangent(s, length == 1 ? s->work.step : NULL);
-      return take_step(ctx, s, &d, 1, true);
+      return apply_step(ctx, s, &d, 1, true);
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the prescribed displacements invert an element");

@@ -154,9 +154,9 @@ static double unit_of(const struct dea_solid *s, const double *from, const doubl
 
 /* The limit point or bifurcation that the last step has passed, or where it cannot be closed in on
  * that step. */
-static dea_status take_stop(struct dea_context *ctx, struct search *a,
-                            enum dea_solid_stop_kind kind, struct dea_solid_continuation *path,
-                            struct dea_continuation_point *at)
+static dea_status record_stop(struct dea_context *ctx, struct search *a,
+                              enum dea_solid_stop_kind kind, struct dea_solid_continuation *path,
+                              struct dea_continuation_point *at)
 {
   a->stop->kind = kind;
   a->stop->unstable_modes = at->unstable_modes;
@@ -217,8 +217,8 @@ static bool leaves_plane(struct dea_solid *s, const double *mode)
 /* A flat film in tension all over is held in its plane by it. Where the last step has made a mode
  * unstable in which it leaves the plane, that is one of the mesh, as are all that there are then,
  * and the path goes on (docs/theory/stops.md). *of_mesh: so many. */
-static dea_status look_at_modes(struct dea_context *ctx, const struct search *a, int unstable,
-                                int *of_mesh)
+static dea_status check_modes(struct dea_context *ctx, const struct search *a, int unstable,
+                              int *of_mesh)
 {
   struct dea_solid *s = a->s;
   double value;
@@ -274,7 +274,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
     DEA_TRY(ctx, dea_solid_continuation_step(ctx, path, &at));
     first = i == 0 ? at.slope : first;
     if (at.passed == DEA_CONTINUATION_LIMIT) {
-      DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
+      DEA_TRY(ctx, record_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
       return a->stop->load_factor < 1 ? DEA_OK : return_to_goal(ctx, a);
     }
     struct dea_solid_change change;
@@ -282,7 +282,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
     DEA_TRY(ctx,
             change.grew ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path thins at once") : DEA_OK);
     DEA_TRY(ctx, report_point(ctx, a, DEA_STOP_UNKNOWN));
-    DEA_TRY(ctx, look_at_modes(ctx, a, at.unstable_modes, &of_mesh));
+    DEA_TRY(ctx, check_modes(ctx, a, at.unstable_modes, &of_mesh));
     const bool unstable = at.unstable_modes > of_mesh;
     if (at.load >= 1 && !unstable && of_mesh > 0 && !is_deflected(a->s, a->s->problem.length_m)) {
       return stay_flat(ctx, a, path);
@@ -293,7 +293,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
         return status;
       }
       dea_context_clear(ctx);
-      return take_stop(ctx, a, DEA_STOP_UNSTABLE, path, &at);
+      return record_stop(ctx, a, DEA_STOP_UNSTABLE, path, &at);
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path is long");
@@ -409,8 +409,8 @@ static dea_status solve_steps(struct dea_context *ctx, const struct search *a, c
 
 /* Such load steps, which are looked at: where they fail the solid is at their last equilibrium, or
  * where they began if that is not on the path from there (false: *stays). */
-static dea_status take_steps(struct dea_context *ctx, struct search *a, const double *goal,
-                             double least, bool *stays)
+static dea_status solve_to(struct dea_context *ctx, struct search *a, const double *goal,
+                           double least, bool *stays)
 {
   start_here(a);
   a->s->found.predicts_tangent = true; // the first linear step is kept
@@ -457,7 +457,7 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, dea_statu
 {
   const struct dea_solid_report before = *a->report;
   bool stays = true;
-  *ended = take_steps(ctx, a, a->at, 1, &stays);
+  *ended = solve_to(ctx, a, a->at, 1, &stays);
   *there = *ended == DEA_OK && stays && a->report->unstable_modes == 0;
   if (*there) {
     a->report->snapped |= before.snapped;
@@ -536,7 +536,7 @@ static dea_status go(struct dea_context *ctx, struct search *a)
 {
   for (int i = 0; i < MAX_ROUNDS; i++) {
     bool stays = false, on = true;
-    dea_status status = take_steps(ctx, a, a->goal, path_share, &stays);
+    dea_status status = solve_to(ctx, a, a->goal, path_share, &stays);
     if (status == DEA_OK && stays) {
       note_left_plane(a);
       return DEA_OK;

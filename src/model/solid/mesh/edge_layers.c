@@ -152,7 +152,7 @@ static size_t corner_at(const struct work *w, const struct side *side, int node)
 }
 
 /* Corners that share a side which no row lies along are of one class. */
-static void make_classes(struct work *w)
+static void build_classes(struct work *w)
 {
   for (size_t k = 0; k < w->count; k++) {
     w->parent[k] = (int)k;
@@ -419,7 +419,7 @@ static bool fill_well(struct work *w, struct dea_places *places, struct dea_plan
 }
 
 /* The mesh with rows in the place of the one without. */
-static dea_status take_rows(struct dea_context *ctx, struct work *w, struct dea_plane_mesh *mesh)
+static dea_status read_rows(struct dea_context *ctx, struct work *w, struct dea_plane_mesh *mesh)
 {
   size_t quads = mesh->quad_count;
   for (size_t k = 0; k < w->count; k++) {
@@ -470,11 +470,11 @@ dea_status dea_edge_layers_add(struct dea_context *ctx, struct dea_plane_mesh *m
   if (status == DEA_OK && layers->rows > 0) {
     sort_sides(&w);
     mark_sides(&w);
-    make_classes(&w);
+    build_classes(&w);
     for (size_t k = 0; k < w.count; k++) {
       w.scale[k] = 1;
     }
-    status = take_rows(ctx, &w, mesh);
+    status = read_rows(ctx, &w, mesh);
   }
   dea_arena_free(&w.memory);
   return status;

@@ -475,7 +475,7 @@ static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *
 
 /* Keeps the elements in shapes, with their regions; closes the gaps in the numbers of nodes.
  * number: [node_count] of mesh. */
-static dea_status take_elements(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+static dea_status read_elements(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
                                 unsigned char *within, int *number, struct dea_plane_mesh *mesh)
 {
   size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1)), quads = 0, nodes = 0;
@@ -519,7 +519,7 @@ static const struct dea_gmsh_shape *curve_of(const struct dea_gmsh_plan *plan, s
 }
 
 /* Sides of elements that lie on a contour. before: as gmsh made them; number: as above. */
-static dea_status take_edges(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+static dea_status read_edges(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
                              const int *before, size_t before_count, const int *number,
                              double close, struct dea_plane_mesh *mesh)
 {
@@ -592,9 +592,9 @@ static dea_status classify(struct dea_context *ctx, const struct dea_gmsh_plan *
   int *number = dea_alloc(ctx, mesh->node_count, sizeof *number);
   dea_status status = within != NULL && number != NULL ? DEA_OK : DEA_E_MEMORY;
   status = status == DEA_OK ? name_all(ctx, plan, mesh) : status;
-  status = status == DEA_OK ? take_elements(ctx, plan, within, number, mesh) : status;
+  status = status == DEA_OK ? read_elements(ctx, plan, within, number, mesh) : status;
   status =
-      status == DEA_OK ? take_edges(ctx, plan, before, before_count, number, close, mesh) : status;
+      status == DEA_OK ? read_edges(ctx, plan, before, before_count, number, close, mesh) : status;
   dea_free(ctx, number);
   dea_free(ctx, within);
   dea_free(ctx, before);

@@ -794,7 +794,7 @@ static dea_status add_line(struct reader *r, const struct raw_element *e, double
 }
 
 /* The edges out of their list. */
-static dea_status take_edges(struct reader *r, const struct list *curves,
+static dea_status read_edges(struct reader *r, const struct list *curves,
                              struct dea_plane_mesh *mesh)
 {
   size_t per = (size_t)(mesh->order + 1);
@@ -825,7 +825,7 @@ static dea_status fill(struct reader *r, const struct survey *s, double unit_m,
   for (size_t i = s->quads; i < s->quads + s->lines && status == DEA_OK; i++) {
     status = add_line(r, &elements[i], unit_m, places, mesh, &curves);
   }
-  status = status == DEA_OK ? take_edges(r, &curves, mesh) : status;
+  status = status == DEA_OK ? read_edges(r, &curves, mesh) : status;
   dea_free(r->ctx, curves.data);
   dea_free(r->ctx, within);
   return status;

@@ -27,7 +27,7 @@ static struct basis basis_of(const struct dea_grid *grid, size_t element)
   return b;
 }
 
-static void put_local(struct basis *b, const double local[3])
+static void set_local(struct basis *b, const double local[3])
 {
   for (int axis = 0; axis < 2; axis++) {
     dea_lagrange((size_t)b->line, b->plane, local[axis], b->value[axis], b->slope[axis]);
@@ -64,7 +64,7 @@ static bool find_local(struct basis *b, const struct dea_grid *grid, const int *
   local[0] = local[1] = local[2] = 0;
   for (int round = 0; round < ROUNDS; round++) {
     double x[2], J[4];
-    put_local(b, local);
+    set_local(b, local);
     place_of(b, grid, nodes, x, J);
     double det = J[0] * J[3] - J[1] * J[2], dx = X[0] - x[0], dy = X[1] - x[1];
     double step[2] = {(J[3] * dx - J[1] * dy) / det, (J[0] * dy - J[2] * dx) / det};
@@ -163,7 +163,7 @@ static void value_in(const struct dea_grid *grid, size_t element, const double l
 {
   const int *node = grid->nodes + element * DEA_HEX_NODES_MAX;
   struct basis b = basis_of(grid, element);
-  put_local(&b, local);
+  set_local(&b, local);
   out[0] = out[1] = out[2] = 0;
   for (int k = 0; k < b.levels; k++) {
     for (int j = 0; j < b.line; j++) {

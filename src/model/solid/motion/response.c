@@ -66,8 +66,8 @@ static dea_status find_rest(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-static dea_status make_room(struct dea_context *ctx, const struct dea_solid *s, size_t count,
-                            struct dea_solid_response *r)
+static dea_status reserve(struct dea_context *ctx, const struct dea_solid *s, size_t count,
+                          struct dea_solid_response *r)
 {
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): of the caller
   r->count = count;
@@ -111,7 +111,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double high
 {
   size_t count = 0;
   DEA_TRY(ctx, count_modes(ctx, s, highest, &count));
-  DEA_TRY(ctx, make_room(ctx, s, count, r));
+  DEA_TRY(ctx, reserve(ctx, s, count, r));
   DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, 0, force));
   if (count > 0) { // K stays there for the rest
     DEA_TRY(ctx, dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_MASS, count, r->square, r->shape));

@@ -79,7 +79,7 @@ static dea_status check_stable(struct dea_context *ctx, struct dea_solid *s)
                         negative);
 }
 
-static dea_status make_parts(struct dea_context *ctx, struct system *y, struct dea_branches *only)
+static dea_status build_parts(struct dea_context *ctx, struct system *y, struct dea_branches *only)
 {
   DEA_TRY(ctx, copy_tangent(ctx, y, &y->part[0]));
   DEA_TRY(ctx, dea_solid_create_mass(ctx, y->solid, &y->part[1]));
@@ -286,7 +286,7 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
       dea_solid_allreduce_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
   status = status == DEA_OK ? check_stable(ctx, s) : status;
   status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, 0, memory) : status;
-  status = status == DEA_OK ? make_parts(ctx, y, only) : status;
+  status = status == DEA_OK ? build_parts(ctx, y, only) : status;
   status = status == DEA_OK ? prepare_matrix(ctx, y, &sum) : status;
   status = status == DEA_OK ? set_right(ctx, y, memory) : status;
   for (size_t i = 0; i < count && status == DEA_OK; i++) {

@@ -114,7 +114,7 @@ static size_t pressure_of(const struct work *w, size_t k)
 }
 
 /* Values of one element at u, and in `own` those that the moved one is compared with. */
-static dea_status take_state(struct work *w, size_t e, struct dea_element_state *at)
+static dea_status get_state(struct work *w, size_t e, struct dea_element_state *at)
 {
   dea_status status = dea_recover_state(w->in, e, true, at);
   for (int q = 0; status == DEA_OK && q < dea_grid_nodes_of(w->in->grid, e); q++) {
@@ -131,8 +131,8 @@ static dea_status take_state(struct work *w, size_t e, struct dea_element_state 
 }
 
 /* Gradient and pressure of the k-th z in one element, where `in` is moved by `step` of it. */
-static dea_status take_dual(struct work *w, const struct dea_recover_input *in, size_t e, size_t k,
-                            double step, struct dea_element_state *at)
+static dea_status get_dual(struct work *w, const struct dea_recover_input *in, size_t e, size_t k,
+                           double step, struct dea_element_state *at)
 {
   dea_status status = dea_recover_state(in, e, false, at);
   for (int q = 0; status == DEA_OK && q < dea_grid_nodes_of(w->in->grid, e); q++) {
@@ -162,21 +162,21 @@ static double move(struct work *w, const double *z)
 }
 
 /* All elements, at u and moved by each z. */
-static dea_status take_all(struct work *w, const struct dea_recover_quantity *of,
-                           struct dea_element_state *at)
+static dea_status get_all(struct work *w, const struct dea_recover_quantity *of,
+                          struct dea_element_state *at)
 {
   const size_t elements = w->in->grid->element_count;
   struct dea_recover_input in = *w->in;
   dea_status status = DEA_OK;
   size_t e = 0;
   for (; status == DEA_OK && e < elements; e++) {
-    status = take_state(w, e, at);
+    status = get_state(w, e, at);
   }
   in.u = w->moved;
   for (size_t k = 0; status == DEA_OK && k < w->count; k++) {
     const double step = move(w, of[k].z);
     for (e = 0; status == DEA_OK && e < elements; e++) {
-      status = take_dual(w, &in, e, k, step, at);
+      status = get_dual(w, &in, e, k, step, at);
     }
   }
   return status == DEA_OK ? DEA_OK
@@ -227,7 +227,7 @@ static void add_second(const struct work *w, size_t e, int n, double *value)
 }
 
 /* Means at the points: a wide element knows no more of a place than a narrow one. */
-static void take_means(struct work *w)
+static void get_means(struct work *w)
 {
   const struct dea_grid *grid = w->in->grid;
   for (size_t e = 0; e < grid->element_count; e++) {
@@ -249,7 +249,7 @@ static void take_means(struct work *w)
 }
 
 /* What recovery makes of an element, at its Gauss points, [points][width]. */
-static void take_recovered(const struct work *w, size_t e, double *out)
+static void get_recovered(const struct work *w, size_t e, double *out)
 {
   double nodes[DEA_HEX_NODES_MAX * WIDTH_MAX];
   for (int n = 0; n < dea_grid_nodes_of(w->in->grid, e); n++) {
@@ -341,7 +341,7 @@ static void estimate(struct work *w, const struct dea_recover_quantity *of, doub
   const size_t elements = w->in->grid->element_count, columns = dea_grid_columns(w->in->grid);
   double recovered[DEA_HEX_NODES_MAX * WIDTH_MAX];
   for (size_t e = 0; e < elements; e++) {
-    take_recovered(w, e, recovered);
+    get_recovered(w, e, recovered);
     for (size_t k = 0; k < w->count; k++) {
       double one = add_element(w, e, k, recovered, w->around + k * columns);
       if (part != NULL) {
@@ -358,7 +358,7 @@ static void estimate(struct work *w, const struct dea_recover_quantity *of, doub
 static dea_status gather(struct work *w, const struct dea_recover_quantity *of,
                          const double (*mirror)[3], struct dea_element_state *at)
 {
-  dea_status status = take_all(w, of, at);
+  dea_status status = get_all(w, of, at);
   if (status == DEA_OK) {
     fit_all(w);
   }
@@ -373,7 +373,7 @@ static dea_status gather(struct work *w, const struct dea_recover_quantity *of,
     status = dea_recover_second(w->ctx, &second, w->second);
   }
   if (status == DEA_OK) {
-    take_means(w);
+    get_means(w);
   }
   return status;
 }

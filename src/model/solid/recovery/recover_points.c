@@ -80,7 +80,7 @@ struct asked {
   struct dea_element_input in;
 };
 
-static void ask(const struct dea_recover_input *in, size_t e, struct asked *out)
+static void select_element(const struct dea_recover_input *in, size_t e, struct asked *out)
 {
   const struct dea_element *element = &in->elements->of[in->kind[e]];
   const int *nodes = in->grid->nodes + e * DEA_HEX_NODES_MAX;
@@ -107,7 +107,7 @@ dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
 {
   const struct dea_element *element = &in->elements->of[in->kind[e]];
   struct asked asked;
-  ask(in, e, &asked);
+  select_element(in, e, &asked);
   return element->type->recover(element, &asked.in, out);
 }
 
@@ -116,7 +116,7 @@ dea_status dea_recover_state(const struct dea_recover_input *in, size_t e, bool 
 {
   const struct dea_element *element = &in->elements->of[in->kind[e]];
   struct asked asked;
-  ask(in, e, &asked);
+  select_element(in, e, &asked);
   return element->type->state(element, &asked.in, stress, out);
 }
 

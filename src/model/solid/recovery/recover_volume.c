@@ -110,7 +110,7 @@ static dea_status add_column(struct work *w, size_t from, size_t end)
   return DEA_OK;
 }
 
-static dea_status take_means(struct work *w)
+static dea_status get_means(struct work *w)
 {
   size_t count = w->in->grid->element_count;
   w->stack = dea_recover_stack(w->ctx, w->in);
@@ -284,7 +284,7 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
   struct work work = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in};
   *out = NULL;
   dea_status status = number_points(&work);
-  status = status == DEA_OK ? take_means(&work) : status;
+  status = status == DEA_OK ? get_means(&work) : status;
   status = status == DEA_OK ? dea_field_mesh_create(ctx, work.point_count, out) : status;
   status = status == DEA_OK ? fill_mesh(&work, *out) : status;
   dea_free(ctx, work.stack);
