@@ -162,7 +162,7 @@ struct dea_design {
     struct { // model reduced
       struct dea_label file, monitor;
       struct dea_choice motion; // 0: the largest displacement, else 1 + enum dea_observed
-      struct dea_quantity voltage_V, force, voltages, forces;
+      struct dea_quantity voltage_V, force, voltages, forces, air_kg_per_m3;
     } reduced;
   } compute;
 

@@ -111,6 +111,10 @@ static const struct dea_field reduced_fields[] = {
                     .max = 65, .absent_text = "5, and 9 where these are not enough"),
     DEA_INTEGER_ROW("forces", AT(forces), "9", "forces at each, the same", .min = 5, .max = 17,
                     .default_text = "5"),
+    DEA_NUMBER_ROW("air", AT(air_kg_per_m3), "kg/m^3", "1.2 kg/m^3",
+                   "density of the gas on both sides of the film, which moves with it as in a wide "
+                   "rigid wall; 0: vacuum, as in model 3d",
+                   .max = 100, .default_text = "0 kg/m^3"),
 };
 
 const struct dea_record dea_reduced_record = {"reduced", "model reduced", reduced_fields,

@@ -43,6 +43,7 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
   settings.reduced.force = fmax(design->compute.reduced.force.si, 0);            // 0 of NAN
   settings.reduced.voltages = (int)fmax(design->compute.reduced.voltages.si, 0); // as above
   settings.reduced.forces = (int)fmax(design->compute.reduced.forces.si, 0);
+  settings.reduced.air_kg_per_m3 = fmax(design->compute.reduced.air_kg_per_m3.si, 0);
   return settings;
 }
 

@@ -60,6 +60,7 @@ struct dea_model_settings {
     double voltage_V;     // up to which
     double force;         // to either side [N] or [N m]; 0: what moves it as far as the voltage
     int voltages, forces; // of samples, odd; 0: 9 and 5
+    double air_kg_per_m3; // density of the gas around the film; 0: vacuum
     const struct dea_design *design; // lent: what the file's device is compared with; NULL: nothing
   } reduced;
   /* A model of another device, whose mesh is moved to this one: so that answers change smoothly

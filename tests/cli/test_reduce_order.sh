@@ -17,6 +17,12 @@ design=$source/examples/devices/cone-mass.yaml
   -s compute.reduced.file=cone.json \
   -s 'compute.frequency={bias: [3 kV], excitation: 1 V, from: 2 Hz, to: 40 Hz, points: 25, damping: 0.03}' \
   >out 2>&1 || { cat out; exit 1; }
+if "$DEA_COMMAND" run "$design" --model reduced --study sweep --no-figures -o run \
+  -s compute.reduced.file=cone.json -s 'compute.reduced.air=1.2 kg/m^3' >out 2>&1 || # made in vacuo
+  ! grep -q 'another gas' out; then
+  cat out
+  exit 1
+fi
 cat >look.m <<'END'
 s = jsondecode(fileread('cone-ss.json'));
 G = @(f) s.C * ((2i * pi * f * eye(rows(s.A)) - s.A) \ s.B) + s.D;

@@ -33,6 +33,9 @@ static dea_status hash_device(struct dea_context *ctx, const struct dea_device *
         dea_text_add(&text, "%s=%s\n", values->items[i].path, values->items[i].text);
       }
     }
+    if (settings->reduced.air_kg_per_m3 > 0) {
+      dea_text_add(&text, "air=%.17g\n", settings->reduced.air_kg_per_m3);
+    }
     dea_sha256_hex(dea_text_get(&text), text.length, out);
   }
   const bool failed = text.failed;
@@ -292,7 +295,8 @@ static dea_status check_device(struct dea_context *ctx, const char *path, const 
   return of == NULL || hash[0] == '\0' || strcmp(of, hash) == 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_DESIGN,
-                        "%s is a reduced-order model of another device: make it anew by "
+                        "%s is a reduced-order model of another device, or in another gas: make it "
+                        "anew by "
                         "dea reduce-order",
                         path);
 }

@@ -1,10 +1,14 @@
 #include "model/solid/adapter/compliance.h"
 
+#include "model/solid/adapter/air_mass.h"
+#include "model/solid/adapter/solid_fields.h"
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/adjoint.h"
 #include "model/solid/equilibrium/modes.h"
 
+#include <assert.h>
+#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -39,22 +43,95 @@ static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_e
   return DEA_OK;
 }
 
-/* The lowest modes phi, with (phi . slope)^2/omega^2 of dq/dF, and -(phi . slope)(phi .
- * R_V)/omega^2 of dq/dV. */
+enum { MODES = DEA_COMPLIANCE_MODES };
+
+/* The lowest modes phi: 1/omega^2, (phi . slope)/omega and -(phi . R_V)/omega. */
+struct modes {
+  double inverse[MODES], along[MODES], by_rate[MODES];
+};
+
+/* Added masses of the modes [MODES][dofs]. */
+static dea_status find_air(struct dea_context *ctx, const struct dea_air *air, const double *vector,
+                           size_t dofs, double out[MODES * MODES])
+{
+  enum { CELLS = 3000 };
+  static_assert((int)MODES <= (int)DEA_AIR_SHAPES_MAX, "room");
+  struct dea_field_mesh *surface, *moved;
+  DEA_TRY(ctx, dea_solid_surface(ctx, air->film.solid, air->ply, &surface));
+  const size_t size = 3 * surface->point_count;
+  double *shapes = dea_solid_alloc(ctx, MODES * size, sizeof *shapes);
+  dea_status status = shapes == NULL ? DEA_E_MEMORY : DEA_OK;
+  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
+    status = dea_motions_surface(ctx, &air->film, air->ply, vector + k * dofs, &moved);
+    if (status == DEA_OK) {
+      memcpy(shapes + k * size, dea_field_mesh_find(moved, "displacement_m")->values,
+             size * sizeof *shapes);
+      dea_field_mesh_destroy(ctx, moved);
+    }
+  }
+  status = status == DEA_OK ? dea_air_mass(ctx, surface, air->sector, CELLS, shapes, MODES, out)
+                            : status;
+  dea_free(ctx, shapes);
+  dea_field_mesh_destroy(ctx, surface);
+  return DEA_CHAIN(ctx, status);
+}
+
+/* The modes with gas, in the space of those without: with the added masses A the inverse squares
+ * are the eigenvalues of (1_kl + A_kl)/(omega_k omega_l), by whose vectors the others turn. */
+static dea_status add_air(struct dea_context *ctx, const double *A, double density,
+                          struct modes *modes)
+{
+  const struct modes was = *modes;
+  double B[MODES * MODES], values[MODES];
+  for (int i = 0; i < MODES * MODES; i++) {
+    const int k = i / MODES, l = i % MODES;
+    B[i] = sqrt(was.inverse[k] * was.inverse[l]) * ((k == l ? 1 : 0) + density * A[i]);
+    if (!isfinite(B[i])) { // an unstable mode
+      return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "the state is unstable");
+    }
+  }
+  if (LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'U', MODES, B, MODES, values) != 0) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "modes with the gas around the film");
+  }
+  for (int k = 0; k < MODES; k++) {
+    const double *y = B + MODES * (MODES - 1 - k); // descending
+    modes->inverse[k] = values[MODES - 1 - k];
+    modes->along[k] = modes->by_rate[k] = 0;
+    for (int l = 0; l < MODES; l++) {
+      modes->along[k] += y[l] * was.along[l];
+      modes->by_rate[k] += y[l] * was.by_rate[l];
+    }
+  }
+  return DEA_OK;
+}
+
+/* With their parts of dq/dF and dq/dV. */
 static dea_status find_modes(struct dea_context *ctx, struct work *w, double copies,
-                             const double *slope, struct dea_compliance *out)
+                             const double *slope, const struct dea_air *air,
+                             struct dea_compliance *out)
 {
   const size_t dofs = w->solid->problem.dofs;
-  double square[DEA_COMPLIANCE_MODES],
-      *vector = dea_solid_alloc(ctx, DEA_COMPLIANCE_MODES * dofs, sizeof *vector);
+  double square[MODES], mass[MODES * MODES],
+      *vector = dea_solid_alloc(ctx, MODES * dofs, sizeof *vector);
+  struct modes modes;
   dea_status status = vector == NULL ? DEA_E_MEMORY
                                      : dea_solid_modes_whole(ctx, w->solid, DEA_MODES_BY_MASS,
-                                                             DEA_COMPLIANCE_MODES, square, vector);
-  for (size_t k = 0; k < DEA_COMPLIANCE_MODES && status == DEA_OK; k++) {
-    const double *mode = vector + k * dofs, along = dea_solid_dot(w->solid, mode, slope);
-    out->modes[k] = (struct dea_compliance_mode){
-        sqrt(square[k]) / (2 * acos(-1.0)), along * along / square[k] / (copies * out->by_force),
-        -along * dea_solid_dot(w->solid, mode, w->rate) / square[k] / out->by_voltage};
+                                                             MODES, square, vector);
+  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
+    const double *mode = vector + k * dofs, omega = sqrt(square[k]);
+    modes.inverse[k] = 1 / square[k];
+    modes.along[k] = dea_solid_dot(w->solid, mode, slope) / omega;
+    modes.by_rate[k] = -dea_solid_dot(w->solid, mode, w->rate) / omega;
+  }
+  if (status == DEA_OK && air->density_kg_per_m3 > 0) {
+    status = find_air(ctx, air, vector, dofs, mass);
+    status = status == DEA_OK ? add_air(ctx, mass, air->density_kg_per_m3, &modes) : status;
+  }
+  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
+    out->modes[k] =
+        (struct dea_compliance_mode){1 / (2 * acos(-1.0) * sqrt(modes.inverse[k])),
+                                     modes.along[k] * modes.along[k] / (copies * out->by_force),
+                                     modes.along[k] * modes.by_rate[k] / out->by_voltage};
   }
   dea_free(ctx, vector);
   return DEA_CHAIN(ctx, status);
@@ -110,8 +187,8 @@ static dea_status find_fast(struct dea_context *ctx, struct work *w, double copi
 
 dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid, double copies,
                                double voltage_V, const double *slope,
-                               const struct dea_branches *branches, int with,
-                               struct dea_compliance *out)
+                               const struct dea_branches *branches, const struct dea_air *air,
+                               int with, struct dea_compliance *out)
 {
   struct work w = {.solid = solid, .voltage_V = voltage_V};
   double energy_J, by_energy[2] = {0};
@@ -127,7 +204,7 @@ dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid,
   dea_adjoint_destroy(ctx, w.adjoint);
   w.adjoint = NULL;
   status = status == DEA_OK && (with & DEA_COMPLIANCE_WITH_MODES)
-               ? find_modes(ctx, &w, copies, slope, out)
+               ? find_modes(ctx, &w, copies, slope, air, out)
                : status;
   status = status == DEA_OK && (with & DEA_COMPLIANCE_WITH_FAST)
                ? find_fast(ctx, &w, copies, slope, branches, out)

@@ -55,10 +55,9 @@ static dea_status fill_points(struct dea_context *ctx, const struct dea_motions 
   return DEA_OK;
 }
 
-/* The film's middle surface, moved by v so little that it is as good as at rest: its displacement
- * is linear in v. */
-static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *m, int ply,
-                             const double *v, struct dea_field_mesh **out)
+/* The surface is moved by v so little that it is as good as at rest. */
+dea_status dea_motions_surface(struct dea_context *ctx, const struct dea_motions *m, int ply,
+                               const double *v, struct dea_field_mesh **out)
 {
   static const double little = 1e-9; // of the size of the mesh
   size_t dofs = 3 * m->grid->node_count;
@@ -72,6 +71,9 @@ static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *
   dea_status status = dea_solid_surface(ctx, m->solid, ply, out);
   memcpy(u, keep, dofs * sizeof *u);
   dea_free(ctx, keep);
+  for (size_t i = 0; status == DEA_OK && i < 3 * (*out)->point_count; i++) {
+    dea_field_mesh_find(*out, "displacement_m")->values[i] /= scale;
+  }
   return status;
 }
 
@@ -86,7 +88,7 @@ static dea_status add_shape(struct dea_context *ctx, const struct dea_motions *m
   snprintf(field.name, sizeof field.name, DEA_SHAPE_FIELD, (int)point->mode);
   snprintf(field.meaning, sizeof field.meaning,
            "shape of the mode at %.6g Hz, its largest displacement 1", point->frequency_Hz);
-  DEA_TRY(ctx, surface_of(ctx, m, ply, v, &moved));
+  DEA_TRY(ctx, dea_motions_surface(ctx, m, ply, v, &moved));
   dea_status status = dea_field_mesh_add(ctx, mesh, &field, &values);
   if (status == DEA_OK) {
     const double *u = dea_field_mesh_find(moved, "displacement_m")->values;

@@ -18,6 +18,10 @@ struct dea_motions {
   void *user;
 };
 
+/* The middle surface of a ply whose displacement is a motion v [3 nodes], and whose other fields
+ * are not to be read. out: owned by the caller, NULL on failure. */
+dea_status dea_motions_surface(struct dea_context *ctx, const struct dea_motions *motions, int ply,
+                               const double *v, struct dea_field_mesh **out);
 /* As `modes` and `respond` of struct dea_model_type; ply: of the film. */
 dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *motions, int ply,
                              const struct dea_load_point *at, size_t count,

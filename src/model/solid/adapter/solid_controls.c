@@ -225,8 +225,13 @@ dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model 
   for (size_t i = 0; i < model->solid->problem.dofs; i++) {
     out->value += model->pull.slope[i] * u[i];
   }
-  return DEA_CHAIN(ctx, dea_compliance_find(ctx, model->solid, model->copies, model->at.voltage_V,
-                                            model->pull.slope, model->plies.branches, with, out));
+  const struct dea_air air = {model->settings.reduced.air_kg_per_m3,
+                              {.solid = model->solid, .grid = model->mesh.grid},
+                              (int)model->plies.film,
+                              &model->mesh.sector};
+  return DEA_CHAIN(ctx,
+                   dea_compliance_find(ctx, model->solid, model->copies, model->at.voltage_V,
+                                       model->pull.slope, model->plies.branches, &air, with, out));
 }
 
 /* A step in time, in which a control may move. */

@@ -117,7 +117,8 @@ static dea_status find_motions(struct dea_context *ctx, const struct dea_model *
   DEA_TRY(ctx, dea_solid_check_densities(ctx, model));
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                          "model 3d: frequencies are those in vacuo; the air that moves with a film "
-                         "makes it slower, by up to a fifth%s%s",
+                         "makes it slower, a thin one by about a fifth (model reduced has it: "
+                         "compute.reduced.air)%s%s",
                          model->mesh.sector.fold == 0
                              ? ""
                              : ". A sector has only those modes that have its symmetry "
