@@ -355,6 +355,19 @@ static double residual(const struct step *s, struct dea_reduced_copy *to, double
   return s->was + (1 - s->a_m) * now + (1 - s->a_f) * r;
 }
 
+/* The acceleration from the forces: by a difference of places, over h^2, short steps lose digits.
+ */
+static void balance(const struct step *s, struct dea_reduced_copy *to)
+{
+  double slope;
+  const double r = residual(s, to, &slope);
+  if (s->mass != NULL) {
+    const double m = polynomial(s->mass, to->at.q - s->model->middle), a = r / ((1 - s->a_m) * m);
+    to->acceleration -= a;
+    to->rate -= s->gamma * s->h * a;
+  }
+}
+
 static int solve(struct step *s, struct dea_reduced_copy *to)
 {
   const struct dea_reduced_copy *n = s->from;
@@ -375,7 +388,7 @@ static int solve(struct step *s, struct dea_reduced_copy *to)
     }
     if (is_last(s->model, step)) {
       move_to(force, &to->at);
-      residual(s, to, &slope);
+      balance(s, to);
       return DEA_REDUCED_OK;
     }
   }
