@@ -1,7 +1,15 @@
 /* Of a device's C source (dea reduce-order --c): reciprocity, balance of energy of a free motion,
- * steps a second.   cc -O3 -include DEVICE.c reduced_check.c -lm */
+ * steps a second: with -DLONG the first, in long double, without it the others.
+ *   cc -O3 -DDEVICE='"DEVICE.c"' reduced_check.c -lm */
+#include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <time.h>
+#ifdef LONG
+#include <tgmath.h>
+#define double long double
+#endif
+#include DEVICE
 
 static const struct dea_reduced *const m = &dea_reduced_device;
 
@@ -64,6 +72,7 @@ int main(void)
 {
   const struct dea_reduced_spline *e = &m->energy;
   const double top = e->breaks[1][e->cells[1]], V = m->even ? sqrt(top) : top;
+#ifdef LONG
   struct dea_reduced_point p;
   dea_reduced_at(m, 0.1 * e->breaks[0][e->cells[0]], 0.7 * V, &p);
   const double dq = p.by_force * e->breaks[0][e->cells[0]];
@@ -71,6 +80,9 @@ int main(void)
   for (double h = 1.6e-2; h > 9e-4; h /= 2) { // long steps are cut off, short ones lose digits
     least = fmin(least, reciprocity(0.7 * V, p.q, h * V, h * dq));
   }
-  printf("%.2g %.2g %.3g\n", least, m->mode_count > 0 ? energy(0.7 * V) : 0, speed(V));
+  printf("%.2Lg\n", least);
+#else
+  printf("%.2g %.3g\n", m->mode_count > 0 ? energy(0.7 * V) : 0, speed(V));
+#endif
   return 0;
 }

@@ -83,7 +83,11 @@
     "of the centre's z against the excitation")                                                    \
   X(fibre_tip_amplitude_m, "m", "nm", 1e9, "amplitude fibre tip", "of the fibre tip's z")          \
   X(fibre_tip_phase_rad, "rad", "deg", 57.29577951308232, "phase fibre tip",                       \
-    "of the fibre tip's z against the excitation")
+    "of the fibre tip's z against the excitation")                                                 \
+  X(electrode_edge_amplitude_m, "m", "nm", 1e9, "amplitude electrode edge",                        \
+    "of the electrode edge's u, by the excitation")                                                \
+  X(electrode_edge_phase_rad, "rad", "deg", 57.29577951308232, "phase electrode edge",             \
+    "of the electrode edge's u against the excitation")
 
 /* What a reader of a point has to know of its numbers (docs/theory/trust.md). A doubt: they are not
  * to be trusted. A danger: they are, but the device would not live. A limit: of what the model

@@ -315,6 +315,9 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
     if (tip) {
       points[i].fibre_tip_amplitude_m = excitation->amplitude_V * cabs(q);
       points[i].fibre_tip_phase_rad = carg(q);
+    } else if (o->coordinate.column != 0) {
+      points[i].electrode_edge_amplitude_m = excitation->amplitude_V * cabs(q);
+      points[i].electrode_edge_phase_rad = carg(q);
     }
     for (size_t k = 0; k < 2 * width; k++) {
       model->answers[2 * i * width + k] = NAN;

@@ -169,6 +169,8 @@ static dea_status add_frequency(struct dea_context *ctx, void *user, size_t i, c
                  &p->centre_phase_rad);
   find_amplitude(m, "fibre_tip_z_m", real, imaginary, p->ripple_V, &p->fibre_tip_amplitude_m,
                  &p->fibre_tip_phase_rad);
+  find_amplitude(m, "electrode_edge_u_m", real, imaginary, p->ripple_V,
+                 &p->electrode_edge_amplitude_m, &p->electrode_edge_phase_rad);
   return m->take != NULL ? m->take(ctx, m->user, i, real, imaginary) : DEA_OK;
 }
 
