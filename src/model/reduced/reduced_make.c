@@ -339,7 +339,15 @@ struct candidate {
   double size, off, Hz;
 };
 
-/* Of the states without a force: m = 1/(dq/dF omega^2) by x, and its shares. */
+/* By how much the coordinate is stiffer at once than in the end: by dq/dV or, where that is 0 or
+ * grows, by dq/dF. */
+static double stiffening(const struct making *m, const struct dea_compliance *at)
+{
+  const double ratio = at->by_voltage / at->fast_by_voltage;
+  return !m->viscous ? 1 : ratio > 1 ? ratio : at->by_force / at->fast_by_force;
+}
+
+/* Of the states without a force: m by x from the stiffness at once, and its shares. */
 static dea_status fit_mode(struct making *m, size_t k, const struct dea_reduced_sample *free,
                            const double *x, struct candidate *out)
 {
@@ -350,7 +358,7 @@ static dea_status fit_mode(struct making *m, size_t k, const struct dea_reduced_
   for (size_t i = 0; i < count; i++) {
     const struct dea_compliance_mode *at = &free[i].at.modes[k];
     const double omega = 2 * acos(-1.0) * at->frequency_Hz;
-    mass[i] = 1 / (free[i].at.by_force * omega * omega);
+    mass[i] = stiffening(m, &free[i].at) / (free[i].at.by_force * omega * omega);
     share[i] = at->voltage_share;
     if (i >= from) {
       mode->share += at->share / (double)(count - from);
@@ -439,8 +447,8 @@ static double add_branches(const struct dea_layout *l, struct dea_reduced *core)
   return sum;
 }
 
-/* k is such that without it dq/dV, or dq/dF where that is 0, is what it is at once: K (slow/fast -
- * 1); de/dq is the root of it over that at the middle. */
+/* k is such that with it the stiffness is that at once; de/dq is the root of it over that at the
+ * middle. */
 static dea_status fit_branches(struct making *m, const struct dea_reduced_sample *free,
                                const double *x, struct dea_reduced_order *out)
 {
@@ -450,10 +458,7 @@ static dea_status fit_branches(struct making *m, const struct dea_reduced_sample
     return DEA_OK;
   }
   for (size_t i = 0; i < m->grid.voltages; i++) {
-    const struct dea_compliance *at = &free[i].at;
-    const double by_voltage = at->by_voltage / at->fast_by_voltage - 1;
-    root[i] =
-        sqrt((by_voltage > 0 ? by_voltage : at->by_force / at->fast_by_force - 1) / at->by_force);
+    root[i] = sqrt((stiffening(m, &free[i].at) - 1) / free[i].at.by_force);
     if (!isfinite(root[i])) {
       return dea_fail(m->ctx, DEA_E_DOMAIN, "branches do not stiffen the coordinate");
     }

@@ -105,7 +105,7 @@ static dea_status add_air(struct dea_context *ctx, const double *A, double densi
   return DEA_OK;
 }
 
-/* With their parts of dq/dF and dq/dV. */
+/* With their parts of dq/dF and dq/dV; of a viscous film of those that move at once. */
 static dea_status find_modes(struct dea_context *ctx, struct work *w, double copies,
                              const double *slope, const struct dea_air *air,
                              struct dea_compliance *out)
@@ -114,6 +114,9 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, double cop
   double square[MODES], mass[MODES * MODES],
       *vector = dea_solid_alloc(ctx, MODES * dofs, sizeof *vector);
   struct modes modes;
+  const bool fast = isfinite(out->fast_by_force);
+  const double by_force = fast ? out->fast_by_force : out->by_force,
+               by_voltage = fast ? out->fast_by_voltage : out->by_voltage;
   dea_status status = vector == NULL ? DEA_E_MEMORY
                                      : dea_solid_modes_whole(ctx, w->solid, DEA_MODES_BY_MASS,
                                                              MODES, square, vector);
@@ -130,8 +133,8 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, double cop
   for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
     out->modes[k] =
         (struct dea_compliance_mode){1 / (2 * acos(-1.0) * sqrt(modes.inverse[k])),
-                                     modes.along[k] * modes.along[k] / (copies * out->by_force),
-                                     modes.along[k] * modes.by_rate[k] / out->by_voltage};
+                                     modes.along[k] * modes.along[k] / (copies * by_force),
+                                     modes.along[k] * modes.by_rate[k] / by_voltage};
   }
   dea_free(ctx, vector);
   return DEA_CHAIN(ctx, status);
@@ -157,10 +160,11 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w, double co
   return DEA_OK;
 }
 
-/* Slopes of what moves at once: with the tangent of a step that takes no time. */
+/* Slopes of what moves at once and, unless air is NULL, its modes: with the tangent of a step that
+ * takes no time. */
 static dea_status find_fast(struct dea_context *ctx, struct work *w, double copies,
                             const double *slope, const struct dea_branches *branches,
-                            struct dea_compliance *out)
+                            const struct dea_air *air, struct dea_compliance *out)
 {
   struct dea_solid *s = w->solid;
   struct dea_internal_variables *held;
@@ -178,6 +182,11 @@ static dea_status find_fast(struct dea_context *ctx, struct work *w, double copi
     const double *answer = dea_adjoint_answer(w->adjoint, 0);
     out->fast_by_force = dea_solid_dot(s, answer, slope) / copies;
     out->fast_by_voltage = -dea_solid_dot(s, answer, w->rate);
+  }
+  dea_adjoint_destroy(ctx, w->adjoint);
+  w->adjoint = NULL;
+  if (status == DEA_OK && air != NULL) {
+    status = find_modes(ctx, w, copies, slope, air, out);
   }
   s->state.internal_variables = NULL;
   dea_solid_forget(s);
@@ -203,17 +212,16 @@ dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid,
   status = status == DEA_OK ? find_slopes(ctx, &w, copies, slope, by_energy, out) : status;
   dea_adjoint_destroy(ctx, w.adjoint);
   w.adjoint = NULL;
-  status = status == DEA_OK && (with & DEA_COMPLIANCE_WITH_MODES)
-               ? find_modes(ctx, &w, copies, slope, air, out)
-               : status;
-  status = status == DEA_OK && (with & DEA_COMPLIANCE_WITH_FAST)
-               ? find_fast(ctx, &w, copies, slope, branches, out)
-               : status;
+  const bool modes = with & DEA_COMPLIANCE_WITH_MODES;
+  if (status == DEA_OK && (with & DEA_COMPLIANCE_WITH_FAST)) {
+    status = find_fast(ctx, &w, copies, slope, branches, modes ? air : NULL, out);
+  } else if (status == DEA_OK && modes) {
+    status = find_modes(ctx, &w, copies, slope, air, out);
+  }
   dea_solid_hold_potential(solid, voltage_V, solid->state.u);
   if (status == DEA_OK) { // reactions are those of the equilibrium again
     status = dea_solid_assemble(ctx, solid, voltage_V, DEA_FORCE, &energy_J);
   }
-  dea_adjoint_destroy(ctx, w.adjoint);
   dea_free(ctx, w.rate);
   return DEA_CHAIN(ctx, status);
 }
