@@ -84,6 +84,9 @@ TEST(test_answer_to_a_slow_ripple)
   assert_true(centre < 0 && tip < 0); // away from the fibres
   assert_close(points[0].centre_amplitude_m * cos(points[0].centre_phase_rad), centre, 1e-3, 0);
   assert_close(points[0].fibre_tip_amplitude_m * cos(points[0].fibre_tip_phase_rad), tip, 1e-3, 0);
+  double edge = 50 * (more.electrode_edge_u_m - less.electrode_edge_u_m) / 40;
+  assert_close(points[0].electrode_edge_amplitude_m * cos(points[0].electrode_edge_phase_rad), edge,
+               1e-3, 0);
   assert_true(points[1].centre_amplitude_m > 1.1 * points[0].centre_amplitude_m);
   dea_solid_module.destroy(ctx, model);
 }
