@@ -1,13 +1,15 @@
-#define _GNU_SOURCE // uselocale, fileno
+#define _GNU_SOURCE // fileno, mkdtemp, nftw, uselocale
 #include "base/write_file.h"
 
 #include "base/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <locale.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,6 +20,32 @@ char *dea_path_join(struct dea_context *ctx, const char *directory, const char *
   size_t n = strlen(directory);
   dea_text_add(&text, "%s%s%s", directory, n > 0 && directory[n - 1] != '/' ? "/" : "", name);
   return text.data;
+}
+
+dea_status dea_folder_create_temporary(struct dea_context *ctx, const char *word,
+                                       char folder[DEA_TEMPORARY_SIZE])
+{
+  const char *in = getenv("TMPDIR");
+  in = in != NULL && in[0] != '\0' ? in : "/tmp";
+  if (snprintf(folder, DEA_TEMPORARY_SIZE, "%s/dea-%s-XXXXXX", in, word) >= DEA_TEMPORARY_SIZE) {
+    return dea_fail(ctx, DEA_E_IO, "TMPDIR is too long a name");
+  }
+  return mkdtemp(folder) != NULL
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", folder, strerror(errno));
+}
+
+static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *at)
+{
+  (void)info, (void)kind, (void)at;
+  (void)remove(path);
+  return 0;
+}
+
+void dea_folder_remove_temporary(const char *folder)
+{
+  enum { FILES_OPEN = 8 };
+  (void)nftw(folder, remove_entry, FILES_OPEN, FTW_DEPTH | FTW_PHYS);
 }
 
 size_t dea_path_length(const char *path)
@@ -201,6 +229,12 @@ dea_status dea_file_write_into(struct dea_context *ctx, const char *directory, c
   dea_status status = dea_file_write(ctx, path, bytes, length);
   dea_free(ctx, path);
   return status;
+}
+
+dea_status dea_text_write_path(struct dea_context *ctx, const struct dea_text *text,
+                               const char *path)
+{
+  return text->failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(text), text->length);
 }
 
 dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,

@@ -3,6 +3,8 @@
 
 #include "base/text.h"
 
+enum { DEA_TEMPORARY_SIZE = 1000 };
+
 /* "directory/name"; owned by the caller, NULL on failure. */
 char *dea_path_join(struct dea_context *ctx, const char *directory, const char *name);
 /* Makes a folder and those above it; fine when it is there. DEA_E_IO otherwise. */
@@ -10,6 +12,11 @@ dea_status dea_folder_create(struct dea_context *ctx, const char *directory);
 /* A new name is in its folder, which has to reach the disk too: brings the folder that `path` lies
  * in there. Some file systems cannot. */
 void dea_folder_sync(const char *path);
+/* A new folder for files on the way, "$TMPDIR/dea-WORD-XXXXXX", which only this user can enter. */
+dea_status dea_folder_create_temporary(struct dea_context *ctx, const char *word,
+                                       char folder[DEA_TEMPORARY_SIZE]);
+/* Removes such a folder with all that is in it. */
+void dea_folder_remove_temporary(const char *folder);
 /* True when something of that name exists. */
 bool dea_path_exists(const char *path);
 /* Length of a path without the slashes at its end; "/" keeps its own. */
@@ -39,7 +46,10 @@ dea_status dea_file_write_into(struct dea_context *ctx, const char *directory, c
  * name, or removing it when that fails. */
 char *dea_partial_name(struct dea_context *ctx, const char *path);
 dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path);
-/* The text of *text as file directory/name; fails for a text with a failed append. */
+/* The text of *text as a file, the second as directory/name; DEA_E_MEMORY for a text with a failed
+ * append. */
+dea_status dea_text_write_path(struct dea_context *ctx, const struct dea_text *text,
+                               const char *path);
 dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
                           const char *directory, const char *name);
 /* The same of a string. */

@@ -14,7 +14,7 @@ struct request {
 static void print_order(const struct request *request, const struct dea_reduced_order *o,
                         const struct dea_device *device)
 {
-  const bool turns = o->coordinate.column == 0 && o->coordinate.component >= 3;
+  const bool turns = dea_reduced_order_turns(o);
   const double display = turns ? 180 / acos(-1) : 1e6;
   struct dea_reduced_point at;
   char name[120];

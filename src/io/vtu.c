@@ -339,8 +339,7 @@ dea_status dea_pvd_write(struct dea_context *ctx, const struct dea_pvd_entry *en
   }
   dea_text_add(&text, "</Collection>\n</VTKFile>\n");
   dea_c_locale_leave(before);
-  dea_status status =
-      text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
+  dea_status status = dea_text_write_path(ctx, &text, path);
   dea_text_free(&text);
   return status;
 }

@@ -49,7 +49,7 @@ static void find_blocked(const struct dea_reduced_order *o, const struct dea_cur
                          struct dea_report_run *io)
 {
   struct dea_reduced_point rest = {0};
-  bool turns = o->coordinate.column == 0 && o->coordinate.component >= 3;
+  bool turns = dea_reduced_order_turns(o);
   io->blocked_N = io->blocked_V = NAN;
   if (turns || dea_reduced_at(&o->core, 0, 0, &rest) != DEA_REDUCED_OK) {
     return;

@@ -4,10 +4,15 @@
 
 #include <stdio.h>
 
+bool dea_reduced_order_turns(const struct dea_reduced_order *order)
+{
+  return order->coordinate.column == 0 && order->coordinate.component >= 3;
+}
+
 dea_status dea_reduced_fail(struct dea_context *ctx, const struct dea_reduced_order *order, int end,
                             double voltage_V)
 {
-  const bool turns = order->coordinate.column == 0 && order->coordinate.component >= 3;
+  const bool turns = dea_reduced_order_turns(order);
   switch (end) {
   case DEA_REDUCED_BEYOND_VOLTAGE:
     return dea_fail(ctx, DEA_E_DOMAIN,

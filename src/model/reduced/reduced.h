@@ -76,6 +76,8 @@ dea_status dea_reduced_order_write_mujoco(struct dea_context *ctx,
                                           const struct dea_reduced_order *order,
                                           const struct dea_device *device, double voltage_V,
                                           double damping_ratio, const char *path);
+/* Whether the coordinate is a rotation (rad, N m) and no displacement (m, N). */
+bool dea_reduced_order_turns(const struct dea_reduced_order *order);
 void dea_reduced_order_destroy(struct dea_context *ctx, struct dea_reduced_order *order);
 
 /* "hub z", with its unit. */

@@ -135,7 +135,7 @@ static void add_points(struct dea_text *out, const struct dea_reduced_order *o)
 void dea_reduced_order_c(const struct dea_reduced_order *order, const struct dea_device *device,
                          struct dea_text *out)
 {
-  const bool turns = order->coordinate.column == 0 && order->coordinate.component >= 3;
+  const bool turns = dea_reduced_order_turns(order);
   char name[120];
   dea_reduced_order_name(order, device, name, sizeof name);
   void *locale = dea_c_locale_enter();
@@ -155,8 +155,7 @@ dea_status dea_reduced_order_write_c(struct dea_context *ctx, const struct dea_r
 {
   struct dea_text text = {.ctx = ctx};
   dea_reduced_order_c(order, device, &text);
-  dea_status status =
-      text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
+  dea_status status = dea_text_write_path(ctx, &text, path);
   dea_text_free(&text);
   return DEA_CHAIN(ctx, status);
 }

@@ -195,7 +195,7 @@ int dea_reduced_held(const struct dea_reduced *model, double q, double voltage_V
   return end != DEA_REDUCED_OK ? end : hold(&section, q, out);
 }
 
-static double polynomial(const double c[3], double x)
+double dea_reduced_polynomial(const double c[3], double x)
 {
   return c[0] + x * (c[1] + x * c[2]);
 }
@@ -210,7 +210,8 @@ static double strain(const struct dea_reduced *model, double q)
 static double pull(const struct dea_reduced *model, const double *p, const double *share, double q,
                    double *slope)
 {
-  const double x = q - model->middle, e = strain(model, q), d = polynomial(model->strain, x);
+  const double x = q - model->middle, e = strain(model, q),
+               d = dea_reduced_polynomial(model->strain, x);
   const double dd = model->strain[1] + 2 * model->strain[2] * x;
   double sum = 0;
   *slope = 0;
@@ -226,7 +227,8 @@ static double pull(const struct dea_reduced *model, const double *p, const doubl
 static double inertia_at(const struct dea_reduced *model, const double mass[3], double q, double v,
                          double a, double a_q, double v_q, double *slope)
 {
-  const double x = q - model->middle, m = polynomial(mass, x), d = mass[1] + 2 * mass[2] * x;
+  const double x = q - model->middle, m = dea_reduced_polynomial(mass, x),
+               d = mass[1] + 2 * mass[2] * x;
   *slope = m * a_q + d * a + d * v * v_q + mass[2] * v * v;
   return m * a + d * v * v / 2;
 }
@@ -281,7 +283,7 @@ static void add_up(const struct dea_reduced *model, struct dea_reduced_state *s)
     s->branch_J += w * branch_J(model, c);
     s->loss_J += w * c->loss_J;
     if (k % 2 == 1) {
-      const double m = polynomial(model->modes[k / 2].mass, c->at.q - model->middle);
+      const double m = dea_reduced_polynomial(model->modes[k / 2].mass, c->at.q - model->middle);
       s->kinetic_J += w * m * c->rate * c->rate / 2;
     }
   }
@@ -362,7 +364,8 @@ static void balance(const struct step *s, struct dea_reduced_copy *to)
   double slope;
   const double r = residual(s, to, &slope);
   if (s->mass != NULL) {
-    const double m = polynomial(s->mass, to->at.q - s->model->middle), a = r / ((1 - s->a_m) * m);
+    const double m = dea_reduced_polynomial(s->mass, to->at.q - s->model->middle),
+                 a = r / ((1 - s->a_m) * m);
     to->acceleration -= a;
     to->rate -= s->gamma * s->h * a;
   }
@@ -400,7 +403,7 @@ static int jump(struct step *s, struct dea_reduced_copy *to)
 {
   double slope;
   const int end = hold(&s->section, s->from->at.q, &to->at);
-  const double x = to->at.q - s->model->middle, m = polynomial(s->mass, x);
+  const double x = to->at.q - s->model->middle, m = dea_reduced_polynomial(s->mass, x);
   const double d = s->mass[1] + 2 * s->mass[2] * x;
   to->acceleration = -(imbalance(s, to, s->external[1], &slope) + d * to->rate * to->rate / 2) / m;
   return end;

@@ -71,6 +71,8 @@ struct dea_reduced_state {
   struct dea_reduced_copy copy[1 + 2 * DEA_REDUCED_MODES];
 };
 
+/* c[0] + c[1] x + c[2] x^2. */
+double dea_reduced_polynomial(const double c[3], double x);
 /* Value and slopes at x, y: out f, f_x, f_y, f_xx, f_xy, f_yy. Outside: of the nearest cell. */
 void dea_reduced_spline_at(const struct dea_reduced_spline *spline, double x, double y,
                            double out[6]);

@@ -1,6 +1,5 @@
 /* A reduced-order model as a functional mock-up unit: FMI 3.0, co-simulation, as source and for
  * Linux on the processor that it is made on. */
-#define _GNU_SOURCE // mkdtemp
 #include "base/assets.h"
 #include "base/file.h"
 #include "base/html.h"
@@ -17,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { FILE_MAX = 1 << 26, FOLDER_SIZE = 300, STEPS = 40 };
+enum { FILE_MAX = 1 << 26, STEPS = 40 };
 #define SOURCE "sources/dea_film.c"
 #define BUILD "sources/buildDescription.xml"
 #if defined __aarch64__
@@ -88,7 +87,7 @@ static double longest_step(const struct dea_reduced *core)
 
 static void describe(struct dea_text *out, const struct dea_reduced_order *o, const char *name)
 {
-  const bool turns = o->coordinate.column == 0 && o->coordinate.component >= 3;
+  const bool turns = dea_reduced_order_turns(o);
   dea_text_add(
       out,
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" "
@@ -155,7 +154,7 @@ static dea_status pack(struct dea_context *ctx, const char *folder, const char *
                       "-o", BINARY,     SOURCE, "-lm", NULL};
   char *const zip[] = {"zip", "-q", "-X", "-r", "model.zip", ".", NULL};
   const char *const files[][2] = {{"modelDescription.xml", xml}, {BUILD, build}, {SOURCE, source}};
-  char name[FOLDER_SIZE + 60], *bytes = NULL;
+  char name[DEA_TEMPORARY_SIZE + 60], *bytes = NULL;
   size_t length;
   bool there;
   snprintf(name, sizeof name, "%s/sources", folder);
@@ -181,25 +180,12 @@ static dea_status pack(struct dea_context *ctx, const char *folder, const char *
   return status;
 }
 
-static void remove_folder(const char *folder)
-{
-  static const char *const names[] = {
-      "model.zip", "modelDescription.xml", SOURCE, BUILD, BINARY, "sources", PLATFORM, "binaries",
-      ""};
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-    char name[FOLDER_SIZE + 60];
-    snprintf(name, sizeof name, "%s/%s", folder, names[i]);
-    (void)remove(name);
-  }
-}
-
 dea_status dea_reduced_order_write_fmu(struct dea_context *ctx,
                                        const struct dea_reduced_order *order,
                                        const struct dea_device *device, const char *path)
 {
-  const char *temporary = getenv("TMPDIR");
   struct dea_text xml = {.ctx = ctx}, source = {.ctx = ctx};
-  char folder[FOLDER_SIZE], name[120];
+  char folder[DEA_TEMPORARY_SIZE], name[120];
   dea_reduced_order_name(order, device, name, sizeof name);
   dea_reduced_order_c(order, device, &source);
   void *locale = dea_c_locale_enter();
@@ -209,14 +195,11 @@ dea_status dea_reduced_order_write_fmu(struct dea_context *ctx,
                "static const double fmi3_longest_step = %.17g;\n%s",
                order->device, longest_step(&order->core), dea_asset_fmi3);
   dea_c_locale_leave(locale);
-  dea_status status = source.failed || xml.failed ? DEA_E_MEMORY : DEA_OK;
-  snprintf(folder, sizeof folder, "%s/dea-fmu-XXXXXX",
-           temporary != NULL && temporary[0] != '\0' ? temporary : "/tmp");
-  if (status == DEA_OK && mkdtemp(folder) == NULL) {
-    status = dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", folder, strerror(errno));
-  } else if (status == DEA_OK) {
+  dea_status status =
+      source.failed || xml.failed ? DEA_E_MEMORY : dea_folder_create_temporary(ctx, "fmu", folder);
+  if (status == DEA_OK) {
     status = pack(ctx, folder, dea_text_get(&xml), dea_text_get(&source), path);
-    remove_folder(folder);
+    dea_folder_remove_temporary(folder);
   }
   dea_text_free(&xml);
   dea_text_free(&source);

@@ -43,8 +43,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
 
 static double mass_at(const struct dea_reduced *core, const struct dea_reduced_mode *mode, double q)
 {
-  const double x = q - core->middle;
-  return mode->mass[0] + x * (mode->mass[1] + x * mode->mass[2]);
+  return dea_reduced_polynomial(mode->mass, q - core->middle);
 }
 
 /* Of a mode in time, or of what these leave, at a state. */
@@ -407,10 +406,7 @@ static void follow_drive(const struct dea_model *model, double length_s, struct 
   const double by = rest->q - from->film.copy[0].at.q;
   double sum = 0;
   for (int i = 0; i <= o->core.mode_count; i++) {
-    const double w =
-        i < o->core.mode_count
-            ? sqrt(1 / (rest->by_force * mass_at(&o->core, &o->core.modes[i], rest->q)))
-            : 2 * acos(-1.0) * o->left_Hz;
+    const double w = omega_at(o, i, rest);
     const double *was = from->away[i];
     if (!(length_s > 0) || !(w > 0)) {
       to->away[i][0] = was[0] - by;

@@ -71,7 +71,7 @@ static void add_model(struct dea_text *out, const struct dea_reduced_order *o, c
                       const struct dea_reduced_point *bias, double damping_ratio)
 {
   const struct dea_reduced *core = &o->core;
-  const bool turns = o->coordinate.column == 0 && o->coordinate.component >= 3;
+  const bool turns = dea_reduced_order_turns(o);
   const double K = 1 / bias->by_force, g = gain(core, bias), u = control(core, bias->voltage_V);
   const double x = bias->q - core->middle, end_V = core->even ? 0 : o->voltage_V[0];
   static const char *const axes[] = {"1 0 0", "0 1 0", "0 0 1"};
@@ -80,7 +80,7 @@ static void add_model(struct dea_text *out, const struct dea_reduced_order *o, c
   for (int i = 1; i < core->mode_count; i++) {
     mode = core->modes[i].voltage_share > core->modes[mode].voltage_share ? i : mode;
   }
-  const double *m = core->modes[mode].mass, mass = m[0] + x * (m[1] + x * m[2]);
+  const double *m = core->modes[mode].mass, mass = dea_reduced_polynomial(m, x);
   dea_text_add(out,
                "<!-- by dea %s, about %.6g kV; control: %s; valid where q at rest is off by at "
                "most %g %% of the stroke: ctrlrange -->\n<mujoco model=\"",
@@ -127,8 +127,7 @@ dea_status dea_reduced_order_write_mujoco(struct dea_context *ctx,
   void *locale = dea_c_locale_enter();
   add_model(&text, order, name, &bias, damping_ratio);
   dea_c_locale_leave(locale);
-  const dea_status status =
-      text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
+  const dea_status status = dea_text_write_path(ctx, &text, path);
   dea_text_free(&text);
   return DEA_CHAIN(ctx, status);
 }

@@ -109,7 +109,7 @@ static void add_motion(struct circuit *c, int k, const struct dea_reduced_mode *
     return;
   }
   const double x = at->q - core->middle, K = 1 / at->by_force, *m = mode->mass;
-  const double mass = m[0] + x * (m[1] + x * m[2]), w = sqrt(K / mass);
+  const double mass = dea_reduced_polynomial(m, x), w = sqrt(K / mass);
   const double damping = core->damping + 2 * damping_ratio * sqrt(K * mass);
   dea_text_add(&c->text, ")\nC%d x%d 0 1n\nG%d 0 x%d v%d 0 %.15g\nCv%d v%d 0 1n\nBv%d 0 v%d ", k, k,
                k, k, k, w * farad, k, k, k, k);
@@ -172,9 +172,7 @@ dea_status dea_reduced_order_write_spice(struct dea_context *ctx, const struct d
   add_copies(&c, &at, damping_ratio);
   dea_text_add(&c.text, "\nCi c d 1n\nVi d 0 0\nFi p n Vi 1\n.ends\n");
   dea_c_locale_leave(locale);
-  const dea_status status = c.text.failed
-                                ? DEA_E_MEMORY
-                                : dea_file_write(ctx, path, dea_text_get(&c.text), c.text.length);
+  const dea_status status = dea_text_write_path(ctx, &c.text, path);
   dea_text_free(&c.text);
   return DEA_CHAIN(ctx, status);
 }

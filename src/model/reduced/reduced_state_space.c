@@ -23,11 +23,6 @@ struct bias {
   double x, K, strain, fast, damping_ratio;
 };
 
-static double at_x(const double c[3], double x)
-{
-  return c[0] + x * (c[1] + x * c[2]);
-}
-
 /* Adds what q = q[u, states] of a copy, which counts `share` and `weight`, is in the outputs. */
 static void add_outputs(const struct bias *b, double share, double weight, size_t states,
                         const double *q, const double q_u[PORTS], struct system *s)
@@ -91,8 +86,8 @@ static void add_all(const struct bias *b, struct system *s)
   add_copy(b, 0, 1, 1, 1, s);
   for (int k = 0; k < b->core->small_count; k++) {
     const struct dea_reduced_mode *mode = &b->core->modes[k];
-    const double share = at_x(mode->by_q, b->x), part = mode->share / share;
-    add_copy(b, at_x(mode->mass, b->x), part, share, share / part, s);
+    const double share = dea_reduced_polynomial(mode->by_q, b->x), part = mode->share / share;
+    add_copy(b, dea_reduced_polynomial(mode->mass, b->x), part, share, share / part, s);
     add_copy(b, 0, part, -share, -share / part, s);
   }
 }
@@ -135,14 +130,14 @@ dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,
                                                const char *path)
 {
   struct bias b = {.core = &order->core, .damping_ratio = damping_ratio};
-  const bool turns = order->coordinate.column == 0 && order->coordinate.component >= 3;
+  const bool turns = dea_reduced_order_turns(order);
   const int end = dea_reduced_at(b.core, 0, voltage_V, &b.at);
   char *text = NULL;
   if (end != DEA_REDUCED_OK) {
     return dea_reduced_fail(ctx, order, end, voltage_V);
   }
   b.x = b.at.q - b.core->middle;
-  b.strain = at_x(b.core->strain, b.x);
+  b.strain = dea_reduced_polynomial(b.core->strain, b.x);
   b.K = b.fast = 1 / b.at.by_force;
   for (int i = 0; i < b.core->branch_count; i++) {
     b.fast += b.core->branch_N_per_m[i] * b.strain * b.strain;

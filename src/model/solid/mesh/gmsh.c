@@ -2,7 +2,6 @@
  * boolean fragments cut them along each other's edges, so the mesh conforms; what is a hole or
  * outside is taken away afterwards, by where the elements' middles are. Sizes come from distances
  * to points along the fine edges, whose numbers the fragments do not change. */
-#define _GNU_SOURCE // mkdtemp
 #include "model/solid/mesh/gmsh.h"
 
 #include "base/arena.h"
@@ -15,7 +14,6 @@
 #include "model/solid/mesh/edge_layers.h"
 #include "model/solid/mesh/msh_read.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -24,7 +22,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { LINES_SAID = 6, SAMPLES_MAX = 20000, FOLDER_SIZE = 1000, LATTICE = 300 };
+enum { LINES_SAID = 6, SAMPLES_MAX = 20000, LATTICE = 300 };
 #define SIZES_FILE "sizes.txt"
 static const double pi = 3.14159265358979323846;
 static const double mm = 1e3, unit_m = 1e-3; // of the script
@@ -415,32 +413,13 @@ static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *p
   return status;
 }
 
-/* With all files in it: gmsh may have left some of its own. */
-static void remove_folder(const char *folder)
-{
-  DIR *all = opendir(folder);
-  if (all != NULL) {
-    const struct dirent *entry = readdir(all);
-    for (; entry != NULL; entry = readdir(all)) {
-      unlinkat(dirfd(all), entry->d_name, 0); // "." and "..": refused
-    }
-    closedir(all);
-  }
-  rmdir(folder);
-}
-
 /* All that gmsh meshes, in one group and one curve "all". */
 static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
                            struct dea_plane_mesh **out)
 {
-  const char *temporary = getenv("TMPDIR");
-  char folder[FOLDER_SIZE];
+  char folder[DEA_TEMPORARY_SIZE];
   *out = NULL;
-  snprintf(folder, sizeof folder, "%s/dea-gmsh-XXXXXX",
-           temporary != NULL && temporary[0] != '\0' ? temporary : "/tmp");
-  if (mkdtemp(folder) == NULL) {
-    return dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", folder, strerror(errno));
-  }
+  DEA_TRY(ctx, dea_folder_create_temporary(ctx, "gmsh", folder));
   dea_status status = DEA_E_DESIGN;
   double best = -INFINITY;
   for (size_t i = 0; i < WAYS && status == DEA_E_DESIGN && best < good_jacobian; i++) {
@@ -462,7 +441,7 @@ static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *
     dea_plane_mesh_destroy(ctx, *out);
     *out = NULL;
   }
-  remove_folder(folder);
+  dea_folder_remove_temporary(folder);
   if (status == DEA_E_DESIGN) {
     char said[400];
     snprintf(said, sizeof said, "%s", dea_context_message(ctx));

@@ -146,8 +146,7 @@ dea_status dea_msh_write(struct dea_context *ctx, const struct dea_msh_groups *g
   void *locale = dea_c_locale_enter();
   add_mesh(&text, groups, grid);
   dea_c_locale_leave(locale);
-  dea_status status =
-      text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
+  dea_status status = dea_text_write_path(ctx, &text, path);
   dea_text_free(&text);
   return DEA_CHAIN(ctx, status);
 }
