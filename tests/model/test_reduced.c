@@ -20,15 +20,15 @@ static struct dea_reduced_sample sample(double force, double V)
                                             .charge_by_voltage = C + 2 * a * force}};
 }
 
-static struct dea_reduced fitted(struct dea_arena *memory, size_t stride)
+static struct dea_reduced fitted(struct dea_arena *memory, size_t voltages, size_t stride)
 {
   struct dea_reduced_sample samples[FORCES * VOLTAGES];
   struct dea_reduced out = {.even = 1, .strain = {1, 0, 0}};
-  for (int i = 0; i < FORCES * VOLTAGES; i++) {
-    const int force = i / VOLTAGES, voltage = i % VOLTAGES;
-    samples[i] = sample(F_m * (force - 2) / 2, V_m * voltage / (VOLTAGES - 1));
+  for (size_t i = 0; i < FORCES * voltages; i++) {
+    const double force = (double)(i / voltages), voltage = (double)(i % voltages);
+    samples[i] = sample(F_m * (force - 2) / 2, V_m * voltage / (double)(voltages - 1));
   }
-  const struct dea_reduced_grid grid = {samples, FORCES, VOLTAGES, true};
+  const struct dea_reduced_grid grid = {samples, FORCES, voltages, true};
   assert_int_equal(dea_reduced_fit_energy(memory, &grid, stride, &out.energy), DEA_OK);
   return out;
 }
@@ -37,8 +37,9 @@ static struct dea_reduced fitted(struct dea_arena *memory, size_t stride)
 TEST(test_fit)
 {
   struct dea_arena memory = {.ctx = ctx};
-  for (size_t stride = 1; stride <= 2; stride++) {
-    const struct dea_reduced model = fitted(&memory, stride);
+  static const size_t fits[][2] = {{VOLTAGES, 1}, {VOLTAGES, 2}, {5, 2}}; // voltages, stride
+  for (size_t k = 0; k < sizeof fits / sizeof fits[0]; k++) {
+    const struct dea_reduced model = fitted(&memory, fits[k][0], fits[k][1]);
     for (int i = 0; i < 20; i++) {
       const double F = F_m * (0.1 * i - 0.97), V = V_m * (0.05 * i + 0.013);
       const struct dea_reduced_sample wanted = sample(F, V);
@@ -63,7 +64,7 @@ TEST(test_swing)
 {
   enum { STEPS = 4000 };
   struct dea_arena memory = {.ctx = ctx};
-  struct dea_reduced model = fitted(&memory, 1);
+  struct dea_reduced model = fitted(&memory, VOLTAGES, 1);
   struct dea_reduced_state s;
   const double m = 0.02, w = sqrt(K / m), V = 3e3, h = 2 * acos(-1) / w / STEPS;
   model.modes[0] = (struct dea_reduced_mode){.mass = {m}, .share = 1, .voltage_share = 1};
@@ -84,7 +85,7 @@ TEST(test_creep)
 {
   enum { STEPS = 400 };
   struct dea_arena memory = {.ctx = ctx};
-  struct dea_reduced model = fitted(&memory, 1);
+  struct dea_reduced model = fitted(&memory, VOLTAGES, 1);
   struct dea_reduced_state s;
   const double k = 40, tau = 2, V = 4e3, h = 0.02, q = a * V * V;
   model.branch_count = 1;
@@ -111,7 +112,7 @@ TEST(test_creep)
 TEST(test_unloaded)
 {
   struct dea_arena memory = {.ctx = ctx};
-  struct dea_reduced model = fitted(&memory, 1);
+  struct dea_reduced model = fitted(&memory, VOLTAGES, 1);
   struct dea_reduced_state s;
   model.branch_count = model.mode_count = 1;
   model.branch_N_per_m[0] = 40;

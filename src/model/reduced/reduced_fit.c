@@ -158,7 +158,8 @@ static double variable(const struct dea_reduced_grid *grid, size_t k, size_t i)
   return k == 0 ? sample(grid, i, 0)->at.force : grid->even ? V * V : V;
 }
 
-/* Breaks at each second of the samples that are used, or at the ends alone. */
+/* Breaks at each second of the samples that are used, or at the ends alone. Where Phi is even in V
+ * its mixed slope has no row at V = 0, and along V one degree less is known. */
 static dea_status set_basis(struct dea_arena *memory, const struct dea_reduced_grid *grid, size_t k,
                             size_t stride, struct basis *out)
 {
@@ -169,7 +170,8 @@ static dea_status set_basis(struct dea_arena *memory, const struct dea_reduced_g
   for (size_t i = 0; i <= last / step; i++) {
     breaks[i] = variable(grid, k, i * step);
   }
-  *out = (struct basis){DEGREE, (int)(last / step), breaks};
+  const size_t known = 2 * (last / stride) + (k == 1 && grid->even ? 0 : 1);
+  *out = (struct basis){known < DEGREE ? (int)known : DEGREE, (int)(last / step), breaks};
   return DEA_OK;
 }
 

@@ -275,7 +275,7 @@ static double complex answer(const struct dea_model *model,
   const struct dea_reduced *core = &model->order->core;
   const struct dea_reduced_point *at = &model->trial.film.at;
   const double x = at->q - core->middle, K = 1 / at->by_force;
-  const double d = core->strain[0] + x * (core->strain[1] + x * core->strain[2]);
+  const double d = dea_reduced_polynomial(core->strain, x);
   double complex stiffness = K;
   for (int i = 0; i < core->branch_count; i++) {
     const double complex wt = I * omega * core->branch_s[i];
@@ -285,7 +285,7 @@ static double complex answer(const struct dea_model *model,
   for (int i = 0; i < core->small_count; i++) {
     const struct dea_reduced_mode *mode = &core->modes[i];
     const double m = mass_at(core, mode, at->q);
-    const double share = mode->by_q[0] + x * (mode->by_q[1] + x * mode->by_q[2]);
+    const double share = dea_reduced_polynomial(mode->by_q, x);
     const double c = core->damping + 2 * excitation->damping_ratio * sqrt(K * m) +
                      excitation->damping_mass_per_s * m + excitation->damping_stiffness_s * K;
     sum += share * (1 / (stiffness - omega * omega * m + I * omega * c) - 1 / stiffness);
