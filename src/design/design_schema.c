@@ -243,6 +243,7 @@ static const struct dea_field not_short[] = {
     ONLY_GENERAL("bodies", "'plies', and rigid bodies"),
     ONLY_GENERAL("springs", "'plies', and rigid bodies with springs"),
     ONLY_GENERAL("pressures", "'plies', and pressures on them"),
+    ONLY_GENERAL("contacts", "'plies', and contacts of these"),
     ONLY_GENERAL("monitors", "'plies', and monitors"),
     ONLY_GENERAL("stripes", "'plies', of which one can be an array of stripes"),
     ONLY_GENERAL("layers", "'plies'"),

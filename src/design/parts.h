@@ -17,6 +17,7 @@ enum {
   DEA_PARTS_BODIES_MAX = 50,
   DEA_PARTS_SPRINGS_MAX = 100,
   DEA_PARTS_PRESSURES_MAX = 50,
+  DEA_PARTS_CONTACTS_MAX = 50,
   DEA_PARTS_MONITORS_MAX = 100,
   DEA_PARTS_OF_MAX = 64,
 };
@@ -121,8 +122,14 @@ struct dea_parts_pressure {
   struct dea_quantity pressure_Pa, gas_m3, ambient_Pa, liquid_m3;
 };
 
+struct dea_parts_contact {
+  struct dea_label name, ply, shape, with;
+  struct dea_choice side; // enum dea_parts_side
+  struct dea_quantity gap_m;
+};
+
 struct dea_parts_monitor {
-  struct dea_label name, ply, shape, body, pressure;
+  struct dea_label name, ply, shape, body, pressure, contact;
   struct dea_quantity at_m[2], from_m[2], to_m[2];
   size_t at_count, from_count, to_count; // 0 or 2
 };
@@ -138,9 +145,10 @@ struct dea_parts {
   struct dea_parts_body *bodies;
   struct dea_parts_spring *springs;
   struct dea_parts_pressure *pressures;
+  struct dea_parts_contact *contacts;
   struct dea_parts_monitor *monitors;
   size_t shape_count, ply_count, electrode_count, channel_count, support_count, body_count;
-  size_t spring_count, pressure_count, monitor_count;
+  size_t spring_count, pressure_count, contact_count, monitor_count;
   struct dea_location place; // of the key `plies`
 };
 

@@ -144,6 +144,7 @@ static dea_status check_all_names(const struct dea_reader *reader, const struct 
   DEA_TRY(reader->ctx, CHECK_NAMES("channel", p->channels, p->channel_count));
   DEA_TRY(reader->ctx, CHECK_NAMES("body", p->bodies, p->body_count));
   DEA_TRY(reader->ctx, CHECK_NAMES("pressure", p->pressures, p->pressure_count));
+  DEA_TRY(reader->ctx, CHECK_NAMES("contact", p->contacts, p->contact_count));
   return CHECK_NAMES("monitor", p->monitors, p->monitor_count);
 }
 
@@ -168,6 +169,7 @@ static dea_status read_lists(const struct dea_parts_raw *raw, struct dea_parts *
   TAKE(bodies, body_count);
   TAKE(springs, spring_count);
   TAKE(pressures, pressure_count);
+  TAKE(contacts, contact_count);
   TAKE(monitors, monitor_count);
   return dea_arena_status(&parts->memory);
 }

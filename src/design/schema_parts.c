@@ -200,6 +200,20 @@ static const struct dea_field pressure_fields[] = {
            "0.5 ml", OPTIONAL, .min = -1e3, .max = 1e3),
 };
 
+static const struct dea_field contact_fields[] = {
+    NAME(dea_parts_contact, name, "name", "its name, for a monitor", "floor",
+         .absent_text = "none"),
+    NAME(dea_parts_contact, ply, "ply", "ply whose face touches", "film", REQUIRED),
+    CHOICE(dea_parts_contact, side, "side", sides, "face of that ply", "bottom", REQUIRED),
+    NAME(dea_parts_contact, shape, "shape", "shape in which it may touch", "film", REQUIRED),
+    NUMBER(dea_parts_contact, gap_m, "gap", "m",
+           "distance of the flat face from a rigid plane that it may touch", "0.5 mm", REQUIRED,
+           .min = 0, .max = 1, .group = 1, .option = 1),
+    NAME(dea_parts_contact, with, "with",
+         "ply beyond a gap that it may touch, with all that lies in the shape between them open",
+         "lower", .group = 1, .option = 2),
+};
+
 static const struct dea_field monitor_fields[] = {
     NAME(dea_parts_monitor, name, "name", "name in results", "middle", REQUIRED),
     POINT(dea_parts_monitor, at, "at", "point x, y of a ply", 1, REQUIRED),
@@ -210,6 +224,9 @@ static const struct dea_field monitor_fields[] = {
     NAME(dea_parts_monitor, pressure, "pressure",
          "name of a pressure: it, and the volume that its face has swept", "chamber", .group = 1,
          .option = 5),
+    NAME(dea_parts_monitor, contact, "contact",
+         "name of a contact: the force on what the face touches, and the area that touches",
+         "floor", .group = 1, .option = 6),
     NAME(dea_parts_monitor, ply, "ply", "ply that the point, line or shape lies in", "film",
          .absent_text = "the uppermost one there"),
 };
@@ -223,6 +240,7 @@ RECORD(support, "what is held");
 RECORD(body, "what moves as one");
 RECORD(spring, "a spring from a body to the outside");
 RECORD(pressure, "pressure on a face of a ply");
+RECORD(contact, "a face of a ply that may touch something");
 RECORD(monitor, "what results are reported of");
 
 /* The list `word` of items of one table. */
@@ -259,6 +277,8 @@ const struct dea_field dea_parts_fields[] = {
           "springs between bodies and the outside", NO_ITEMS),
     ITEMS("pressures", pressure, pressures, DEA_PARTS_PRESSURES_MAX, "pressures on faces",
           NO_ITEMS),
+    ITEMS("contacts", contact, contacts, DEA_PARTS_CONTACTS_MAX,
+          "faces that touch a rigid plane or another ply, without friction", NO_ITEMS),
     ITEMS("monitors", monitor, monitors, DEA_PARTS_MONITORS_MAX, "what results are reported of",
           NO_ITEMS),
 };

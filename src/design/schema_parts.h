@@ -14,9 +14,10 @@ struct dea_parts_raw {
   struct dea_parts_body bodies[DEA_PARTS_BODIES_MAX];
   struct dea_parts_spring springs[DEA_PARTS_SPRINGS_MAX];
   struct dea_parts_pressure pressures[DEA_PARTS_PRESSURES_MAX];
+  struct dea_parts_contact contacts[DEA_PARTS_CONTACTS_MAX];
   struct dea_parts_monitor monitors[DEA_PARTS_MONITORS_MAX];
   size_t shape_count, ply_count, electrode_count, channel_count, support_count, body_count;
-  size_t spring_count, pressure_count, monitor_count;
+  size_t spring_count, pressure_count, contact_count, monitor_count;
 };
 
 /* A kind of shape: those of the geometry, whose tables are made of its parameters, and those that

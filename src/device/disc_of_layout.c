@@ -371,6 +371,9 @@ static dea_status find(struct dea_context *ctx, const struct dea_layout *l, stru
   DEA_TRY(ctx, require(ctx, l->pressure_count == 0, "the pressure on ply",
                        l->pressure_count > 0 ? l->plies[l->pressures[0].ply].name : "",
                        "is no load of one"));
+  DEA_TRY(ctx,
+          require(ctx, l->contact_count == 0, "the contact of ply",
+                  l->contact_count > 0 ? l->plies[l->contacts[0].ply].name : "", "is none of one"));
   for (size_t i = 0; i < l->ply_count; i++) {
     DEA_TRY(ctx, require(ctx, dea_ply_layers(&l->plies[i]) == 1, "ply", l->plies[i].name,
                          "is of several layers"));

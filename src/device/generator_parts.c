@@ -41,6 +41,11 @@ static dea_status find_pressure(const struct maker *m, const struct dea_label *l
   PARTS_OF("pressure", pressures, pressure_count);
 }
 
+static dea_status find_contact(const struct maker *m, const struct dea_label *label, size_t *out)
+{
+  PARTS_OF("contact", contacts, contact_count);
+}
+
 /* A copy of a name, since a device outlives its design; NULL when the arena has failed. */
 static const char *keep(const struct maker *m, const char *text)
 {
@@ -449,6 +454,25 @@ static dea_status add_pressures(struct maker *m)
   return DEA_OK;
 }
 
+static dea_status add_contacts(struct maker *m)
+{
+  struct dea_layout *l = m->out;
+  MAKE(contacts, contact_count);
+  for (size_t i = 0; i < l->contact_count; i++) {
+    const struct dea_parts_contact *from = &m->parts->contacts[i];
+    struct dea_layout_contact *to = &l->contacts[i];
+    to->top = from->side.value == DEA_SIDE_TOP;
+    to->name = keep(m, from->name.text);
+    to->gap_m = or_zero(&from->gap_m);
+    to->location = from->shape.location;
+    to->with = DEA_LAYOUT_NONE;
+    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
+    DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
+    DEA_TRY(m->ctx, from->with.origin != DEA_ABSENT ? find_ply(m, &from->with, &to->with) : DEA_OK);
+  }
+  return DEA_OK;
+}
+
 // Monitors ---------------------------------------------------------------------------------------
 
 /* Whether a ply lies at both ends of a line, or in a region somewhere. */
@@ -494,7 +518,7 @@ static dea_status add_monitor(const struct maker *m, const struct dea_parts_moni
 {
   to->name = keep(m, from->name.text);
   to->location = from->name.location;
-  to->ply = to->region = to->body = to->pressure = DEA_LAYOUT_NONE;
+  to->ply = to->region = to->body = to->pressure = to->contact = DEA_LAYOUT_NONE;
   if (from->body.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_BODY;
     return find_body(m, &from->body, &to->body);
@@ -502,6 +526,10 @@ static dea_status add_monitor(const struct maker *m, const struct dea_parts_moni
   if (from->pressure.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_VOLUME;
     return find_pressure(m, &from->pressure, &to->pressure);
+  }
+  if (from->contact.origin != DEA_ABSENT) {
+    to->kind = DEA_MONITOR_CONTACT;
+    return find_contact(m, &from->contact, &to->contact);
   }
   if (from->shape.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_REGION;
@@ -538,8 +566,9 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
                        struct dea_device *device)
 {
   typedef dea_status (*add_fn)(struct maker *);
-  static const add_fn parts[] = {add_plies,  add_channels, add_electrodes, add_supports,
-                                 add_bodies, add_springs,  add_pressures,  add_monitors};
+  static const add_fn parts[] = {add_plies,     add_channels, add_electrodes,
+                                 add_supports,  add_bodies,   add_springs,
+                                 add_pressures, add_contacts, add_monitors};
   const double g = DEA_STANDARD_GRAVITY_M_PER_S2;
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   struct maker m = {.ctx = ctx, .design = design, .parts = design->parts};

@@ -150,6 +150,7 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
   const struct dea_layout_support *s = layout->supports;
   const struct dea_layout_body *b = layout->bodies;
   const struct dea_layout_pressure *p = layout->pressures;
+  const struct dea_layout_contact *c = layout->contacts;
   int first = 1;
   for (size_t i = 0; i < layout->ply_count; i++) { // two plies are never one another's image
     add(out, layout, layout->plies[i].region, first++);
@@ -175,6 +176,7 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
   LIKE_ONES(p, layout->pressure_count,
             p[j].ply == p[i].ply && p[j].top == p[i].top && p[j].pressure_Pa == p[i].pressure_Pa &&
                 (j == i || (p[j].encloses == DEA_OPEN && p[i].encloses == DEA_OPEN)));
+  LIKE_ONES(c, layout->contact_count, false);
   for (size_t i = 0; i < layout->monitor_count; i++) {
     if (layout->monitors[i].kind == DEA_MONITOR_REGION) {
       add(out, layout, layout->monitors[i].region, first + (int)i);
@@ -201,7 +203,8 @@ static void keep_axes(struct dea_symmetry *symmetry, double angle_rad)
 dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *layout)
 {
   size_t most = layout->ply_count + layout->electrode_count + 2 * layout->support_count +
-                layout->body_count + layout->pressure_count + layout->monitor_count;
+                layout->body_count + layout->pressure_count + layout->contact_count +
+                layout->monitor_count;
   struct dea_arena arena = {.ctx = ctx};
   struct labelled all = {.region = dea_arena_alloc(&arena, most + 1, sizeof *all.region),
                          .label = dea_arena_alloc(&arena, most + 1, sizeof *all.label)};

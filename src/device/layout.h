@@ -124,13 +124,24 @@ struct dea_layout_pressure {
   struct dea_location location;
 };
 
+/* A face of a ply that may touch a rigid plane at a distance, or a face of another ply. */
+struct dea_layout_contact {
+  const char *name;
+  size_t region, ply;
+  bool top;
+  double gap_m; // of the flat face from the plane
+  size_t with;  // the other ply; DEA_LAYOUT_NONE: a plane
+  struct dea_location location;
+};
+
 enum dea_layout_monitor_kind {
   DEA_MONITOR_POINT,  // of a ply
   DEA_MONITOR_LINE,   // two points: their distance
   DEA_MONITOR_RADIUS, // a point, seen from another one that stays: outwards
   DEA_MONITOR_REGION, // of a ply's middle surface
   DEA_MONITOR_BODY,
-  DEA_MONITOR_VOLUME, // below a face with a pressure
+  DEA_MONITOR_VOLUME,  // below a face with a pressure
+  DEA_MONITOR_CONTACT, // of a face with what it touches
 };
 
 /* Where in a ply a point is. */
@@ -147,7 +158,7 @@ struct dea_layout_monitor {
   double at_m[2][2]; // a point, or the two of a line, or a point and the centre of its radius
   size_t ply;        // of these and of a region
   enum dea_monitor_level level; // of these
-  size_t region, body, pressure;
+  size_t region, body, pressure, contact;
   struct dea_location location;
 };
 
@@ -162,9 +173,10 @@ struct dea_layout {
   struct dea_layout_body *bodies;
   struct dea_layout_spring *springs;
   struct dea_layout_pressure *pressures;
+  struct dea_layout_contact *contacts;
   struct dea_layout_monitor *monitors; // [monitor_count + disc_monitor_count]
   size_t region_count, ply_count, electrode_count, channel_count, support_count, body_count;
-  size_t spring_count, pressure_count, monitor_count;
+  size_t spring_count, pressure_count, contact_count, monitor_count;
   size_t disc_monitor_count; // those that a disc brings: columns of load points, without others
   bool polar; // directions of laws count from the radius, not from x: of the short form
   double gravity_m_per_s2[3];   // acceleration of free fall; 0: without weight

@@ -581,11 +581,45 @@ static dea_status check_pressures(struct dea_context *ctx, const struct dea_layo
   return DEA_OK;
 }
 
+/* On the ply, and beyond a gap of the other one where it touches that. */
+static dea_status check_contacts(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 0; i < l->contact_count; i++) {
+    const struct dea_layout_contact *c = &l->contacts[i];
+    const char *region = l->regions[c->region].name;
+    if (dea_layout_overlap_m2(l, c->region, l->plies[c->ply].region) <= 0) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, c->location,
+                                   "the contact in '%s' does not lie on its ply '%s'", region,
+                                   l->plies[c->ply].name));
+      continue;
+    }
+    if (c->with == DEA_LAYOUT_NONE) {
+      continue;
+    }
+    bool open = c->top ? c->with > c->ply : c->with < c->ply;
+    const size_t low = c->with < c->ply ? c->with : c->ply, high = c->with + c->ply - low;
+    bool apart = false;
+    for (size_t p = low + 1; p < high; p++) {
+      open = open && !(dea_layout_overlap_m2(l, c->region, l->plies[p].region) > 0);
+      apart = true;
+    }
+    if (!open || !apart || dea_layout_overlap_m2(l, c->region, l->plies[c->with].region) <= 0) {
+      DEA_TRY(ctx, dea_finding_add(
+                       ctx, DEA_ERROR, c->location,
+                       "in '%s' the %s of ply '%s' has no gap to ply '%s': one as thick as a ply "
+                       "between them that is open there",
+                       region, c->top ? "top" : "bottom", l->plies[c->ply].name,
+                       l->plies[c->with].name));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status check_monitors(struct dea_context *ctx, const struct dea_layout *l)
 {
   for (size_t i = 0; i < l->monitor_count; i++) {
     const struct dea_layout_monitor *m = &l->monitors[i];
-    if (m->kind == DEA_MONITOR_BODY || m->kind == DEA_MONITOR_VOLUME) {
+    if (m->kind >= DEA_MONITOR_BODY) {
       continue;
     }
     const struct dea_layout_ply *ply = &l->plies[m->ply];
@@ -611,7 +645,7 @@ dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *la
   typedef dea_status (*check_fn)(struct dea_context *, const struct dea_layout *);
   static const check_fn checks[] = {check_plies,     check_overhang,   check_supports,
                                     check_bodies,    check_directions, check_held,
-                                    check_pressures, check_monitors};
+                                    check_pressures, check_contacts,   check_monitors};
   DEA_TRY(ctx, check_electrodes(ctx, layout, highest_V));
   for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
     DEA_TRY(ctx, checks[i](ctx, layout));

@@ -345,6 +345,9 @@ static void find_used(const struct dea_layout *l, bool *used)
   for (size_t i = 0; i < l->pressure_count; i++) {
     note(used, l->pressures[i].region);
   }
+  for (size_t i = 0; i < l->contact_count; i++) {
+    note(used, l->contacts[i].region);
+  }
   for (size_t i = 0; i < l->monitor_count; i++) {
     note(used, l->monitors[i].region);
   }

@@ -36,6 +36,8 @@ static const double middle = 98;                       // of the views
 static const double section_words = 13, section_room = 34, clamp_width = 7;
 static const double line_height = 5.2, key_size = 2.9, band = 4;
 
+enum { PLIES = 256 }; // of a section, from the lowest on
+
 struct view {
   const struct dea_paper *paper; // NULL: only measured
   const struct dea_device_drawing *drawing;
@@ -49,6 +51,7 @@ struct view {
   double plan_room;      // heights that the views take with their labels
   double section_height; // of all plies in the section
   int column;            // of the legend
+  double base[PLIES];    // lower side of each ply in the section, from its lower edge
 };
 
 static double x_of(const struct view *v, double x_m)
@@ -227,9 +230,10 @@ static void monitor_place(const struct view *v, size_t i, double out[2])
   const struct dea_layout_monitor *m = &v->layout->monitors[i];
   double at[2] = {m->at_m[0][0], m->at_m[0][1]};
   if (m->kind != DEA_MONITOR_POINT && m->kind != DEA_MONITOR_LINE) {
-    size_t region = m->kind == DEA_MONITOR_BODY     ? v->layout->bodies[m->body].region
-                    : m->kind == DEA_MONITOR_VOLUME ? v->layout->pressures[m->pressure].region
-                                                    : m->region;
+    size_t region = m->kind == DEA_MONITOR_BODY      ? v->layout->bodies[m->body].region
+                    : m->kind == DEA_MONITOR_VOLUME  ? v->layout->pressures[m->pressure].region
+                    : m->kind == DEA_MONITOR_CONTACT ? v->layout->contacts[m->contact].region
+                                                     : m->region;
     dea_region_centroid_m(&v->layout->regions[region].region, at);
   }
   out[0] = x_of(v, at[0]);
@@ -608,14 +612,25 @@ static bool is_there(const struct view *v, size_t number, const double *x, size_
   return dea_region_inside(&v->layout->regions[number].region, 0.5 * (x[k] + x[k + 1]), cut_y(v));
 }
 
-/* Height of the lower side of a ply between two cuts: on what is there. */
-static double base_of(const struct view *v, size_t ply, const double *x, size_t k)
+/* Plies are flat: each lies on the highest of what is below it somewhere, and spans the rest. */
+static void find_bases(struct view *v, const double *x, size_t count)
 {
-  double y = v->section_y;
-  for (size_t i = 0; i < ply; i++) {
-    y += is_there(v, v->layout->plies[i].region, x, k) ? section_height(v->layout, i) : 0;
+  const struct dea_layout *l = v->layout;
+  for (size_t i = 0; i < l->ply_count && i < PLIES; i++) {
+    for (size_t k = 0; k + 1 < count; k++) {
+      for (size_t q = is_there(v, l->plies[i].region, x, k) ? i : 0; q-- > 0;) {
+        if (is_there(v, l->plies[q].region, x, k)) {
+          v->base[i] = fmax(v->base[i], v->base[q] + section_height(l, q));
+          break;
+        }
+      }
+    }
   }
-  return y;
+}
+
+static double base_of(const struct view *v, size_t ply)
+{
+  return v->section_y + v->base[ply < PLIES ? ply : PLIES - 1];
 }
 
 static void draw_section_ply(const struct view *v, size_t ply, const double *x, size_t count)
@@ -628,10 +643,9 @@ static void draw_section_ply(const struct view *v, size_t ply, const double *x, 
       k++;
       continue;
     }
-    double base = base_of(v, ply, x, k);
+    double base = base_of(v, ply);
     size_t end = k + 1;
-    while (end + 1 < count && is_there(v, v->layout->plies[ply].region, x, end) &&
-           fabs(base_of(v, ply, x, end) - base) < 1e-9) {
+    while (end + 1 < count && is_there(v, v->layout->plies[ply].region, x, end)) {
       end++;
     }
     type->box(v->paper->canvas, x_of(v, x[k]), base, v->scale * (x[end] - x[k]), height);
@@ -648,7 +662,7 @@ static void draw_section_electrode(const struct view *v, size_t number, const do
   const struct dea_layout_electrode *e = &v->layout->electrodes[number];
   for (size_t k = 0; k + 1 < count; k++) {
     if (is_there(v, e->region, x, k) && is_there(v, v->layout->plies[e->ply].region, x, k)) {
-      double y = base_of(v, e->ply, x, k) + (e->top ? section_height(v->layout, e->ply) : 0);
+      double y = base_of(v, e->ply) + (e->top ? section_height(v->layout, e->ply) : 0);
       type->line(v->paper->canvas, x_of(v, x[k]), y, x_of(v, x[k + 1]), y);
     }
   }
@@ -709,8 +723,7 @@ static size_t call_out_section(const struct view *v, const double *x, size_t cou
     struct dea_callout *c = &out[used++];
     double share = left ? 0.3 : 0.7;
     *c = (struct dea_callout){.x_mm = x_of(v, x[best] + share * (x[best + 1] - x[best])),
-                              .y_mm = base_of(v, i, x, best) +
-                                      0.5 * (double)run * section_height(l, i)};
+                              .y_mm = base_of(v, i) + 0.5 * (double)run * section_height(l, i)};
     const size_t layers = dea_ply_layers(ply);
     char times[32] = "";
     if (run * layers > 1) {
@@ -912,6 +925,20 @@ static void add_bodies_and_pressures(struct view *v)
     add_key(v, &pressure_style, "%.40s, %s on the %s of %.40s", l->regions[p->region].name, what,
             p->top ? "top" : "bottom", l->plies[p->ply].name);
   }
+  if (l->contact_count > 0) {
+    add_heading(v, "Contacts");
+  }
+  for (size_t i = 0; i < l->contact_count; i++) {
+    const struct dea_layout_contact *c = &l->contacts[i];
+    char what[60];
+    if (c->with == DEA_LAYOUT_NONE) {
+      snprintf(what, sizeof what, "a plane %.4g mm away", 1e3 * c->gap_m);
+    } else {
+      snprintf(what, sizeof what, "%.50s", l->plies[c->with].name);
+    }
+    add_key(v, NULL, "%.40s: %s of %.40s with %s", l->regions[c->region].name,
+            c->top ? "top" : "bottom", l->plies[c->ply].name, what);
+  }
 }
 
 static void add_monitors(struct view *v)
@@ -1009,6 +1036,7 @@ static struct view arrange(const struct dea_device_drawing *drawing)
   v.plan_room = dea_dimensions_height(box, callouts, call_out_plan(&v, callouts)) + 2 * band + 4;
   section_box(&v, box);
   size_t count = find_cuts(&v, x);
+  find_bases(&v, x, count);
   size_t used = call_out_section(&v, x, count, callouts);
   double section = fmax(dea_dimensions_height(box, callouts, used), v.section_height + 10) + 6;
   struct view legend = v;

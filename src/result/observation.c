@@ -19,7 +19,8 @@
   }
 #define FORCE(axis)                                                                                \
   {                                                                                                \
-    "force_" axis "_N", "N", "mN", 1e3, "force " axis, "on a body, of what holds or moves it"      \
+    "force_" axis "_N", "N", "mN", 1e3, "force " axis,                                             \
+        "on a body, of what holds or moves it; on what a contact touches"                          \
   }
 #define MOMENT(axis)                                                                               \
   {                                                                                                \
@@ -46,6 +47,8 @@ const struct dea_column dea_observed_columns[DEA_OBSERVED_COUNT] = {
     MOMENT("z"),
     {"pressure_Pa", "Pa", "kPa", 1e-3, "pressure", "on a face, into its ply"},
     {"volume_m3", "m3", "ml", 1e6, "volume", "that a face with a pressure has swept"},
+    {"contact_area_m2", "m2", "mm2", 1e6, "contact area",
+     "of a flat face where it touches, to the size of an element"},
 };
 
 /* In the order of DEA_OBSERVED_VOLTAGE, ... */
@@ -66,6 +69,9 @@ enum dea_observed dea_observed_main(const double values[DEA_OBSERVED_COUNT])
   }
   if (!isnan(values[DEA_OBSERVED_VOLUME])) {
     return DEA_OBSERVED_VOLUME;
+  }
+  if (!isnan(values[DEA_OBSERVED_CONTACT_AREA])) {
+    return DEA_OBSERVED_FORCE_Z;
   }
   if (!isnan(values[DEA_OBSERVED_AREA_STRETCH])) {
     return DEA_OBSERVED_AREA_STRETCH;
@@ -89,7 +95,10 @@ bool dea_observed_has(enum dea_layout_monitor_kind kind, enum dea_observed obser
     return observed <= DEA_OBSERVED_Z ||
            (observed >= DEA_OBSERVED_STRETCH_X && observed <= DEA_OBSERVED_AREA_STRETCH);
   case DEA_MONITOR_VOLUME:
-    return observed >= DEA_OBSERVED_PRESSURE;
+    return observed == DEA_OBSERVED_PRESSURE || observed == DEA_OBSERVED_VOLUME;
+  case DEA_MONITOR_CONTACT:
+    return observed == DEA_OBSERVED_CONTACT_AREA ||
+           (observed >= DEA_OBSERVED_FORCE_X && observed <= DEA_OBSERVED_FORCE_Z);
   default:
     return observed <= DEA_OBSERVED_TURN_Z ||
            (observed >= DEA_OBSERVED_FORCE_X && observed <= DEA_OBSERVED_MOMENT_Z);

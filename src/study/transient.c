@@ -855,11 +855,16 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
-/* The film of a disc alone, as a model may take a fibre for rigid. */
+/* Densities of the film of a disc alone, as a model may take a fibre for rigid. */
 static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
                          const struct dea_device *device)
 {
   const struct dea_choice *inertia = &settings_of(design)->inertia;
+  if (inertia->value == 1 && device->layout->contact_count > 0) {
+    return dea_refuse(ctx, inertia->location,
+                      "what may touch (contacts) has no impact with inertia: take "
+                      "compute.transient.inertia: no");
+  }
   return inertia->value == 1 && (!device->disc || !(device->film.density_kg_per_m3 > 0))
              ? dea_device_refuse_densities(ctx, inertia->location, device)
              : DEA_OK;

@@ -76,6 +76,7 @@ static const char layout_text[] =
     "bodies: [{name: hub, shape: hub}]\n"
     "springs: [{body: hub, direction: z, stiffness: 7 N/m}]\n"
     "pressures: [{ply: film, side: top, shape: film, pressure: 5 Pa}]\n"
+    "contacts: [{ply: film, side: bottom, shape: film, gap: 1 mm}]\n"
     "monitors: [{name: m, from: [1 mm, 1 mm], to: [2 mm, 1 mm]}]\n"
     "compute: {solid: {adapt: {monitor: m}}}\n";
 

@@ -239,4 +239,112 @@ TEST(test_sphere_on_film)
   release(&film);
 }
 
+/* ---- two blocks ---- */
+
+static const double gap = 0.05, height = 1;
+
+static bool is_block(const void *self, int region, int ply)
+{
+  return ply != 1;
+}
+
+static int block_of_ply(const void *self, int region, int ply)
+{
+  return ply / 2;
+}
+
+static bool is_below(const void *self, int region, int ply, const double middle[3])
+{
+  return ply == 0;
+}
+
+static bool is_above(const void *self, int region, int ply, const double middle[3])
+{
+  return ply == 2;
+}
+
+/* Mirror planes x = 0 and y = 0, the lowest and the highest face held along z. */
+static int ends_held(const void *self, const double X[3])
+{
+  const bool end = X[2] < 1e-9 || X[2] > 2 * height + gap - 1e-9;
+  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (end ? 4 : 0);
+}
+
+/* Stretches of two neo-Hookean blocks that are shortened by d in all, with the same force. */
+static double force_of_blocks(const double mu[2], double d)
+{
+  double low = 1 - d / height, high = 1, l = 0, other = 0;
+  for (int i = 0; i < 100; i++) {
+    l = 0.5 * (low + high);
+    other = 2 - d / height - l;
+    const bool stiffer = mu[0] * (l - 1 / (l * l)) < mu[1] * (other - 1 / (other * other));
+    *(stiffer ? &low : &high) = l;
+  }
+  return -mu[0] * (l - 1 / (l * l)) * 4; // of 2 by 2
+}
+
+/* Alike they shorten alike. A soft one spreads over a stiffer one: beyond its edge there is no
+ * face, and that one's goes on. */
+static void press_blocks(const double mu[2], int steps, double slide)
+{
+  static const double cuts[] = {0, 0.5, 1};
+  struct dea_part_material materials[2];
+  const struct block square = {.size = {2, 2, 0}};
+  const struct dea_block quad = {block_map, &square, cuts, cuts, 2, 2, 0};
+  const struct dea_ply plies[] = {{height, 1, 2}, {gap, 1, 2}, {height, 1, 2}};
+  struct dea_grid *grid;
+  struct dea_surface *below, *above;
+  struct dea_contact *contact;
+  struct dea_solid *solid;
+  struct dea_solid_report report;
+  for (int k = 0; k < 2; k++) {
+    materials[k] = (struct dea_part_material){.law = dea_law_find("neo-hookean"),
+                                              .param = {mu[k]},
+                                              .pre_stretch = {1, 1, 1},
+                                              .kappa_Pa = 1e4 * mu[k]};
+    assert_ok(dea_part_material_relax(&materials[k]));
+  }
+  assert_ok(dea_grid_create(ctx, 2, &quad, 1, plies, 3, is_block, 0, 2, &grid));
+  assert_ok(dea_surface_create(ctx, grid, DEA_FACE_TOP, is_below, NULL, &below));
+  assert_ok(dea_surface_create(ctx, grid, DEA_FACE_BOTTOM, is_above, NULL, &above));
+  const struct dea_contact_options options = {
+      .tip = {.radius_m = height}, .other = below, .stiffness_Pa_per_m = 30, .tolerance = 1e-6};
+  assert_ok(dea_contact_create(ctx, above, &options, &contact));
+  const struct dea_solid_load load = dea_contact_load(contact);
+  const struct dea_solid_options made = {.order_z = 2,
+                                         .part_material_count = 2,
+                                         .part_materials = materials,
+                                         .part_material_of = block_of_ply,
+                                         .held = ends_held,
+                                         .loads = &load,
+                                         .load_count = 1};
+  assert_ok(dea_solid_create(ctx, grid, &made, &solid));
+  for (int step = 0; step <= steps; step++) {
+    const double down = 0.1 * step;
+    double force[3];
+    for (size_t n = 0; n < grid->node_count; n++) {
+      if (grid->X[3 * n + 2] > 2 * height + gap - 1e-9) {
+        assert_ok(dea_solid_prescribe(ctx, solid, n, 4, (const double[3]){0, 0, -down}));
+      }
+    }
+    assert_ok(dea_load_steps_solve(ctx, solid, 0, &report));
+    dea_contact_force(contact, dea_solid_displacement(solid), force);
+    assert_close(-force[2], down > gap ? force_of_blocks(mu, down - gap) : 0,
+                 slide > 0 ? 2e-3 : 5e-5, 1e-12);
+    assert_close(dea_contact_area(contact), down > gap ? 4 : 0, 1e-2, 0);
+  }
+  assert_close(dea_contact_slide(contact, dea_solid_displacement(solid)), slide, 0, 5e-3);
+  dea_solid_destroy(ctx, solid);
+  dea_contact_destroy(ctx, contact);
+  dea_surface_destroy(ctx, below);
+  dea_surface_destroy(ctx, above);
+  dea_grid_destroy(ctx, grid);
+}
+
+TEST(test_two_blocks)
+{
+  press_blocks((const double[2]){2, 2}, 4, 0);
+  press_blocks((const double[2]){10, 1}, 1, 0.04);
+}
+
 TESTS(solid_set_up, solid_tear_down)

@@ -45,6 +45,9 @@ void dea_layout_mesh_used(const struct dea_layout *l, bool *used)
   for (size_t i = 0; i < l->pressure_count; i++) {
     used[l->pressures[i].region] = true;
   }
+  for (size_t i = 0; i < l->contact_count; i++) {
+    used[l->contacts[i].region] = true;
+  }
   for (size_t i = 0; i < l->monitor_count; i++) {
     if (l->monitors[i].kind == DEA_MONITOR_REGION) {
       used[l->monitors[i].region] = true;
@@ -341,13 +344,26 @@ bool dea_layout_mesh_is_within(const struct dea_layout_mesh *mesh, size_t plane_
 
 // Plies ------------------------------------------------------------------------------------------
 
+/* Whether there is a gap between two plies in a region of the plane, which a contact may close. */
+static bool is_open(const struct dea_layout_mesh *mesh, size_t plane_region, size_t a, size_t b)
+{
+  const struct dea_layout *l = mesh->layout;
+  bool open = false;
+  for (size_t i = 0; i < l->contact_count; i++) {
+    const struct dea_layout_contact *c = &l->contacts[i];
+    const bool both = (c->ply == a && c->with == b) || (c->ply == b && c->with == a);
+    open = open || (both && dea_layout_mesh_is_within(mesh, plane_region, c->region));
+  }
+  return open;
+}
+
 /* The ply that one lies on in a region of the plane, or DEA_LAYOUT_NONE. */
 static size_t ply_below(const struct dea_layout_mesh *mesh, size_t plane_region, size_t ply)
 {
   const bool *present = mesh->present + plane_region * mesh->layout->ply_count;
-  while (ply-- > 0) {
-    if (present[ply]) {
-      return ply;
+  for (size_t below = ply; below-- > 0;) {
+    if (present[below]) {
+      return is_open(mesh, plane_region, ply, below) ? DEA_LAYOUT_NONE : below;
     }
   }
   return DEA_LAYOUT_NONE;

@@ -184,7 +184,7 @@ static const double least_volume = 1e-3;
 /* Who a surface is asked for. */
 struct face_of {
   const struct dea_model *model;
-  const struct dea_layout_pressure *pressure;
+  size_t region, ply;
   double height_m; // of the face, z
 };
 
@@ -192,12 +192,22 @@ static bool is_loaded(const void *self, int region, int ply, const double middle
 {
   const struct face_of *of = self;
   const struct dea_layout_mesh *mesh = &of->model->mesh;
-  size_t group = mesh->group[of->pressure->region];
+  size_t group = mesh->group[of->region];
   // between the elements through a ply there are faces too
-  bool outermost = fabs(middle[2] - of->height_m) <
-                   1e-6 * of->model->layout->plies[of->pressure->ply].thickness_m;
-  return (size_t)ply == of->pressure->ply && outermost && group != DEA_LAYOUT_NONE &&
+  bool outermost =
+      fabs(middle[2] - of->height_m) < 1e-6 * of->model->layout->plies[of->ply].thickness_m;
+  return (size_t)ply == of->ply && outermost && group != DEA_LAYOUT_NONE &&
          mesh->plane->within[(size_t)region * mesh->plane->group_count + group] != 0;
+}
+
+/* A face of a ply in a region; *height_m: its z. */
+static dea_status create_face(struct dea_context *ctx, const struct dea_model *model, size_t region,
+                              size_t ply, bool top, struct dea_surface **out)
+{
+  const struct face_of of = {model, region, ply, model->mesh.face_m[ply][top ? 1 : 0]};
+  return DEA_CHAIN(ctx,
+                   dea_surface_create(ctx, model->mesh.grid, top ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
+                                      is_loaded, &of, out));
 }
 
 /* What the sector has of an enclosed volume, below a face of that area. In the iterations a liquid
@@ -229,15 +239,11 @@ static void enclose(struct dea_model *model, size_t i, double area_m2)
 static dea_status add_pressure(struct dea_context *ctx, struct dea_model *model, size_t i)
 {
   const struct dea_layout_pressure *pressure = &model->layout->pressures[i];
-  const struct face_of of = {model, pressure,
-                             model->mesh.face_m[pressure->ply][pressure->top ? 1 : 0]};
   struct dea_surface **surface = &model->surfaces[i];
   if (model->mesh.group[pressure->region] == DEA_LAYOUT_NONE) {
     return DEA_OK;
   }
-  DEA_TRY(ctx,
-          dea_surface_create(ctx, model->mesh.grid, pressure->top ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
-                             is_loaded, &of, surface));
+  DEA_TRY(ctx, create_face(ctx, model, pressure->region, pressure->ply, pressure->top, surface));
   double height_m = model->mesh.grid->X[3 * (*surface)->nodes[0] + 2];
   DEA_TRY(ctx, dea_pressure_create_flat(ctx, *surface, height_m, &model->pressures[i]));
   enclose(model, i, dea_surface_area(*surface));
@@ -326,6 +332,68 @@ void dea_solid_liquids_stiffen(const struct dea_model *model, bool stiff)
       dea_solid_forget(model->solid);
     }
   }
+}
+
+/* Of a sector without a face in it: none. */
+static dea_status create_contact(struct dea_context *ctx, struct dea_model *model, size_t i)
+{
+  static const double stiffness_Pa_per_m = 1e10; // the answer does not depend on it (indent.c)
+  const struct dea_layout_contact *c = &model->layout->contacts[i];
+  struct dea_surface **surface = model->touching[i];
+  const double side = c->top ? 1 : -1;
+  if (model->mesh.group[c->region] == DEA_LAYOUT_NONE) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, create_face(ctx, model, c->region, c->ply, c->top, &surface[0]));
+  if (c->with != DEA_LAYOUT_NONE) {
+    DEA_TRY(ctx, create_face(ctx, model, c->region, c->with, !c->top, &surface[1]));
+  }
+  const struct dea_contact_options options = {
+      .tip = {.shape = DEA_INDENTER_PLANE,
+              .radius_m = model->layout->plies[c->ply].thickness_m,
+              .axis = {0, 0, side}},
+      .place_m = {0, 0, model->mesh.face_m[c->ply][c->top ? 1 : 0] + side * c->gap_m},
+      .other = surface[1],
+      .stiffness_Pa_per_m = stiffness_Pa_per_m};
+  return DEA_CHAIN(ctx, dea_contact_create(ctx, surface[0], &options, &model->contacts[i]));
+}
+
+dea_status dea_solid_contacts_create(struct dea_context *ctx, struct dea_model *model,
+                                     struct dea_solid_load **loads, size_t *count)
+{
+  const size_t all = model->layout->contact_count;
+  model->contacts = dea_arena_alloc(&model->memory, all, sizeof(struct dea_contact *));
+  model->touching = dea_arena_alloc(&model->memory, all, sizeof *model->touching);
+  *loads = dea_arena_alloc(&model->memory, all, sizeof **loads);
+  *count = 0;
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  for (size_t i = 0; i < all; i++) {
+    DEA_TRY(ctx, create_contact(ctx, model, i));
+    if (model->contacts[i] != NULL) {
+      (*loads)[(*count)++] = dea_contact_load(model->contacts[i]);
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_contacts_check(struct dea_context *ctx, struct dea_model *model)
+{
+  static const double most = 0.1; // of a face: forces are within some per cent (theory/loads.md)
+  const double *u = dea_solid_displacement(model->solid);
+  for (size_t i = 0; i < model->layout->contact_count && !model->slid; i++) {
+    const struct dea_layout_contact *c = &model->layout->contacts[i];
+    const double slide = model->contacts[i] != NULL ? dea_contact_slide(model->contacts[i], u) : 0;
+    if (slide > most) {
+      model->slid = true;
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, c->location,
+                                   "model 3d: ply '%s' slides over ply '%s' by %.2g of an element, "
+                                   "and each point stays with the element that it is opposite to "
+                                   "when flat: forces of the contact are rough",
+                                   model->layout->plies[c->ply].name,
+                                   model->layout->plies[c->with].name, slide));
+    }
+  }
+  return DEA_OK;
 }
 
 dea_status dea_solid_loads_add(struct dea_context *ctx, struct dea_model *model)

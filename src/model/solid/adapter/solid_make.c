@@ -137,7 +137,12 @@ dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *m
   for (size_t k = 1; k < l->channel_count; k++) {
     share[k - 1] = l->channels[k].ratio;
   }
+  struct dea_solid_load *contacts;
+  size_t contact_count;
+  DEA_TRY(ctx, dea_solid_contacts_create(ctx, model, &contacts, &contact_count));
   const struct dea_solid_options options = {
+      .loads = contacts,
+      .load_count = contact_count,
       .order_z = dea_mesh_order(model->settings.order_z),
       .part_material_count = l->ply_count,
       .part_materials = model->plies.part_materials,
@@ -233,7 +238,8 @@ dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_dev
   DEA_TRY(ctx, dea_plies_create(ctx, &model->mesh, &model->memory, &model->plies));
   dea_solid_model_find_band(model);
   DEA_TRY(ctx, dea_solid_model_assemble(ctx, model));
-  DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, &model->observer));
+  DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, model->contacts,
+                                   &model->observer));
   DEA_TRY(ctx, dea_solid_loads_release(ctx, model));
   DEA_TRY(ctx, keep_rest(ctx, model));
   return DEA_CHAIN(ctx, report_sag(ctx, model));
@@ -250,6 +256,11 @@ void dea_solid_model_free_parts(struct dea_context *ctx, struct dea_model *model
   }
   for (size_t i = 0; model->surfaces != NULL && i < model->layout->pressure_count; i++) {
     dea_surface_destroy(ctx, model->surfaces[i]);
+  }
+  for (size_t i = 0; model->touching != NULL && i < model->layout->contact_count; i++) {
+    dea_contact_destroy(ctx, model->contacts[i]);
+    dea_surface_destroy(ctx, model->touching[i][0]);
+    dea_surface_destroy(ctx, model->touching[i][1]);
   }
   dea_layout_mesh_free(ctx, &model->mesh);
   dea_arena_free(&model->memory);

@@ -79,6 +79,11 @@ static void mark_layout(const struct dea_layout *l, struct dea_model_marks *mark
     const double own[] = {(double)p->region, (double)p->ply, p->top, p->pressure_Pa};
     mark(marks, own, 4);
   }
+  for (size_t i = 0; i < l->contact_count; i++) {
+    const struct dea_layout_contact *c = &l->contacts[i];
+    const double own[] = {(double)c->region, (double)c->ply, c->top, c->gap_m, (double)c->with};
+    mark(marks, own, 5);
+  }
 }
 
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)

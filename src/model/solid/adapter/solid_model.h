@@ -44,6 +44,9 @@ struct dea_model {
   struct dea_spring **springs;     // [spring_count]
   struct dea_pressure **pressures; // [pressure_count]
   struct dea_surface **surfaces;   // [pressure_count]
+  struct dea_contact **contacts;   // [contact_count], NULL where none of it is meshed
+  struct dea_surface *(
+      *touching)[2]; // [contact_count] its face, and the other one's; NULL: a plane
   struct dea_solid *solid;
   struct dea_observer *observer;
   int *follows;           // [nodes] body that a node moves with, counted from 1; 0: none
@@ -54,6 +57,7 @@ struct dea_model {
   double pressure_factor; // on all pressures
   double *rest;           // u [3 node_count] where it was released, and multipliers there
   bool rest_is_one_of;    // several states there
+  bool slid;              // dea_solid_contacts_check has warned
   struct dea_model_moved *controls;  // [body_count] components that moves have set
   struct dea_model_pull pull;        // the force conjugate to a coordinate
   struct dea_model_variant *variant; // a changed device is under the solid; NULL: its own
@@ -96,6 +100,11 @@ bool dea_solid_has_weight(const struct dea_layout *l);
 dea_status dea_solid_check_densities(struct dea_context *ctx, const struct dea_model *model);
 dea_status dea_solid_bodies_add(struct dea_context *ctx, struct dea_model *model,
                                 double **point_mass);
+/* Contacts of the mesh, and as loads for the solid to be made with, *loads [*count]. */
+dea_status dea_solid_contacts_create(struct dea_context *ctx, struct dea_model *model,
+                                     struct dea_solid_load **loads, size_t *count);
+/* Warns, once, of faces that have slid too far along what they touch. */
+dea_status dea_solid_contacts_check(struct dea_context *ctx, struct dea_model *model);
 dea_status dea_solid_loads_add(struct dea_context *ctx, struct dea_model *model);
 /* To the state of the loads at 0 V. */
 dea_status dea_solid_loads_release(struct dea_context *ctx, struct dea_model *model);

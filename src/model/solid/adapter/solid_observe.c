@@ -32,6 +32,7 @@ struct dea_observer {
   struct dea_arena memory;
   const struct dea_layout_mesh *mesh;
   struct dea_pressure *const *pressures;
+  struct dea_contact *const *contacts;
   size_t count;              // of all monitors, those of a disc too
   struct of_disc *of_disc;   // [disc_monitor_count]
   struct probe (*probes)[2]; // [count] of points and lines
@@ -269,13 +270,15 @@ static void find_columns(const struct dea_context *ctx, struct dea_observer *o)
 }
 
 dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                               struct dea_pressure *const *pressures, struct dea_observer **out)
+                               struct dea_pressure *const *pressures,
+                               struct dea_contact *const *contacts, struct dea_observer **out)
 {
   const struct dea_layout *l = mesh->layout;
   struct dea_observer *o = dea_alloc(ctx, 1, sizeof *o);
   *out = NULL;
   DEA_TRY_MEMORY(o != NULL);
-  *o = (struct dea_observer){.memory = {.ctx = ctx}, .mesh = mesh, .pressures = pressures};
+  *o = (struct dea_observer){
+      .memory = {.ctx = ctx}, .mesh = mesh, .pressures = pressures, .contacts = contacts};
   o->count = l->monitor_count + l->disc_monitor_count;
   o->of_disc = dea_arena_alloc(&o->memory, l->disc_monitor_count, sizeof *o->of_disc);
   o->probes = dea_arena_alloc(&o->memory, o->count + 1, sizeof *o->probes);
@@ -440,16 +443,31 @@ static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_
 
 /* What holds a body along what keeps the symmetry of a sector is the same in all copies; the rest
  * of it they take from each other. */
+/* Forces of a sector become those of the whole. */
+static void sum_up_forces(const struct dea_layout_mesh *mesh, int count, double *out)
+{
+  const int keeps = dea_layout_sector_keeps(&mesh->sector);
+  for (int k = 0; k < count; k++) {
+    out[k] *= (keeps >> k) & 1 ? (double)dea_layout_sector_copies(&mesh->sector) : 0;
+  }
+}
+
 static void observe_body(const struct dea_layout_mesh *mesh, const struct dea_solid *solid,
                          size_t body, double *out)
 {
-  int keeps = dea_layout_sector_keeps(&mesh->sector);
-  double copies = (double)dea_layout_sector_copies(&mesh->sector);
   dea_solid_body_place(solid, body, out + DEA_OBSERVED_X, out + DEA_OBSERVED_TURN_X);
   dea_solid_body_reaction(solid, body, out + DEA_OBSERVED_FORCE_X, out + DEA_OBSERVED_MOMENT_X);
-  for (int k = 0; k < 6; k++) {
-    double *of = &out[DEA_OBSERVED_FORCE_X + k];
-    *of = (keeps >> k) & 1 ? copies * *of : 0;
+  sum_up_forces(mesh, 6, out + DEA_OBSERVED_FORCE_X);
+}
+
+static void observe_contact(const struct dea_observer *o, size_t contact, const double *u,
+                            double *values)
+{
+  if (o->contacts[contact] != NULL) {
+    dea_contact_force(o->contacts[contact], u, values + DEA_OBSERVED_FORCE_X);
+    sum_up_forces(o->mesh, 3, values + DEA_OBSERVED_FORCE_X);
+    values[DEA_OBSERVED_CONTACT_AREA] =
+        (double)dea_layout_sector_copies(&o->mesh->sector) * dea_contact_area(o->contacts[contact]);
   }
 }
 
@@ -615,6 +633,9 @@ static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
       break;
     case DEA_MONITOR_VOLUME:
       observe_volume(o, m->pressure, u, values);
+      break;
+    case DEA_MONITOR_CONTACT:
+      observe_contact(o, m->contact, u, values);
       break;
     }
   }
@@ -886,7 +907,7 @@ static bool knows_gradient(enum dea_layout_monitor_kind kind, enum dea_observed 
          : kind == DEA_MONITOR_REGION
              ? shift || (motion >= DEA_OBSERVED_STRETCH_X && motion <= DEA_OBSERVED_AREA_STRETCH)
          : kind == DEA_MONITOR_VOLUME ? motion == DEA_OBSERVED_VOLUME
-                                      : motion <= DEA_OBSERVED_TURN_Z;
+                                      : kind == DEA_MONITOR_BODY && motion <= DEA_OBSERVED_TURN_Z;
 }
 
 bool dea_observer_force_way(const struct dea_observer *o, const struct dea_solid *solid,
@@ -942,6 +963,8 @@ bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size
     for (size_t i = 0; i < count; i++) {
       weight[i] *= (double)dea_layout_sector_copies(&o->mesh->sector);
     }
+    break;
+  case DEA_MONITOR_CONTACT: // forces alone
     break;
   }
   return true;

@@ -151,5 +151,6 @@ dea_status dea_solid_model_arrived(struct dea_context *ctx, void *self, double v
   struct dea_model *model = self;
   model->at.voltage_V = voltage_V;
   dea_solid_model_note_states(model, model->at.report.snapped);
+  DEA_TRY(ctx, dea_solid_contacts_check(ctx, model));
   return DEA_CHAIN(ctx, set_side(ctx, model));
 }

@@ -108,8 +108,14 @@ static dea_status build_variant(struct dea_context *ctx, struct dea_model *model
       dea_pressure_hold(model->pressures[i], own->pressures[i]);
     }
   }
+  for (size_t i = 0; i < model->layout->contact_count; i++) {
+    if (model->contacts[i] != NULL && own->contacts[i] != NULL) {
+      dea_contact_hold(model->contacts[i], own->contacts[i]);
+    }
+  }
   DEA_TRY(ctx, check_held(ctx, model));
-  return DEA_CHAIN(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, &model->observer));
+  return DEA_CHAIN(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, model->contacts,
+                                            &model->observer));
 }
 
 /* Supports and bodies to where the changed device has them: these are no unknowns, which stay. */
@@ -157,6 +163,8 @@ static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
   model->springs = NULL;
   model->pressures = NULL;
   model->surfaces = NULL;
+  model->contacts = NULL;
+  model->touching = NULL;
   dea_status status = build_variant(ctx, model);
   v->solid = model->solid;
   model->solid = s;
@@ -313,11 +321,11 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
                                &model->at.rest_energy_J);
   model->solid->problem.load_count = loads;
   load_as_at_rest(model, false);
+  bool kept = model->layout->contact_count == 0; // pressures at rest
   for (size_t i = 0; i < model->layout->pressure_count; i++) {
-    if (model->layout->pressures[i].encloses == DEA_LIQUID) { // its pressure at rest is not kept
-      model->at.rest_energy_J = NAN;
-    }
+    kept = kept && model->layout->pressures[i].encloses != DEA_LIQUID;
   }
+  model->at.rest_energy_J = kept ? model->at.rest_energy_J : NAN;
   dea_solid_model_describe(model, voltage_V, out);
   status = status == DEA_OK ? dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out)
                             : status;

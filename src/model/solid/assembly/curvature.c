@@ -218,9 +218,10 @@ static double motion_of_constraints(const struct dea_solid *s, const double *v, 
       struct dea_load_constraint c;
       if (*q != 0 && load->constraint != NULL) {
         load->constraint(load->self, i, s->state.u, &c);
-        const double *at = v + 3 * c.node;
-        sum += 2 * *q * (c.slope[0] * at[0] + c.slope[1] * at[1] + c.slope[2] * at[2]) -
-               c.weight * *q * *q / c.stiffness;
+        for (int k = 0; k < 3 * c.node_count; k++) {
+          sum += 2 * *q * c.slope[k] * v[3 * c.nodes[k / 3] + k % 3];
+        }
+        sum -= c.weight * *q * *q / c.stiffness;
       }
     }
   }

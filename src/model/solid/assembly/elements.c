@@ -38,6 +38,15 @@ static int corner_of(const struct dea_grid *grid, size_t e, bool across)
   return grid->column[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)(across ? plane - 1 : 0)]];
 }
 
+/* Whether the element above has a corner in common with the one below, and no gap. */
+static bool touches(const struct dea_grid *grid, size_t below, size_t above)
+{
+  const int plane = (grid->order + 1) * (grid->order + 1),
+            corner = grid->nodes[above * DEA_HEX_NODES_MAX];
+  const int *nodes = grid->nodes + below * DEA_HEX_NODES_MAX;
+  return nodes[0] == corner || nodes[dea_grid_nodes_of(grid, below) - plane] == corner;
+}
+
 /* last: [columns] the highest element of a laminate whose first corner is there, -1: none; other:
  * [elements] that of another such laminate. */
 static void find_laminates(struct dea_solid *s, size_t columns, int *last, int *other)
@@ -47,7 +56,8 @@ static void find_laminates(struct dea_solid *s, size_t columns, int *last, int *
   memset(last, -1, columns * sizeof *last);
   for (size_t e = 0; e < grid->element_count; e++) { // from the lowest ply to the highest
     int *below = &last[corner_of(grid, e, false)];
-    while (*below >= 0 && corner_of(grid, (size_t)*below, true) != corner_of(grid, e, true)) {
+    while (*below >= 0 && (corner_of(grid, (size_t)*below, true) != corner_of(grid, e, true) ||
+                           !touches(grid, (size_t)*below, e))) {
       below = &other[*below];
     }
     next[e] = *below >= 0 ? next[*below] : (int)e;

@@ -108,21 +108,42 @@ static dea_status split_elements(struct dea_context *ctx, struct dea_solid *s)
   return DEA_OK;
 }
 
-/* Nodes of an element, and those of the bodies that it touches. */
+/* Elements, and the pieces of loads that couple nodes beside them. */
+static size_t couplings_of(const struct dea_solid *s)
+{
+  size_t count = s->problem.grid->element_count;
+  for (size_t l = 0; l < s->problem.load_count; l++) {
+    count += s->problem.loads[l].couples != NULL ? s->problem.loads[l].piece_count : 0;
+  }
+  return count;
+}
+
+/* Nodes of a coupling, the elements first, and those of the bodies that it touches. */
 static int joint_nodes(const struct dea_solid *s, size_t e, int *joint)
 {
-  const int *nodes;
-  int count = dea_solid_nodes(s, e, &nodes);
+  const struct dea_solid_problem *p = &s->problem;
+  int own[DEA_PIECE_NODES_MAX], count = 0;
+  const int *nodes = own;
+  if (e < p->grid->element_count) {
+    count = dea_solid_nodes(s, e, &nodes);
+  } else {
+    const struct dea_solid_load *load = p->loads;
+    for (e -= p->grid->element_count; load->couples == NULL || e >= load->piece_count; load++) {
+      e -= load->couples != NULL ? load->piece_count : 0;
+    }
+    count = load->couples(load->self, e, own);
+  }
   return dea_solid_bodies_nodes(s, count, nodes, joint);
 }
 
-/* Elements of each node: those of node i are elements[first[i]] to elements[first[i + 1] - 1].
+/* Couplings of each node: those of node i are elements[first[i]] to elements[first[i + 1] - 1].
  * first: [node_count + 2]. */
 static void list_elements(const struct dea_solid *s, size_t *first, int *elements)
 {
   const struct dea_grid *grid = s->problem.grid;
+  const size_t couplings = couplings_of(s);
   int joint[DEA_JOINT_NODES_MAX];
-  for (size_t e = 0; e < grid->element_count; e++) {
+  for (size_t e = 0; e < couplings; e++) {
     int count = joint_nodes(s, e, joint);
     for (int n = 0; n < count; n++) {
       first[joint[n] + 2]++;
@@ -131,7 +152,7 @@ static void list_elements(const struct dea_solid *s, size_t *first, int *element
   for (size_t i = 2; i < grid->node_count + 2; i++) {
     first[i] += first[i - 1];
   }
-  for (size_t e = 0; e < grid->element_count; e++) {
+  for (size_t e = 0; e < couplings; e++) {
     int count = joint_nodes(s, e, joint);
     for (int n = 0; n < count; n++) {
       elements[first[joint[n] + 1]++] = (int)e;
@@ -148,7 +169,7 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
   const struct dea_grid *grid = p->grid;
   int joint[DEA_JOINT_NODES_MAX];
   size_t places = 0;
-  for (size_t e = 0; e < grid->element_count; e++) {
+  for (size_t e = 0; e < couplings_of(s); e++) {
     places += (size_t)joint_nodes(s, e, joint);
   }
   size_t *first = dea_alloc(ctx, grid->node_count + 2, sizeof *first);

@@ -102,6 +102,9 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_find_laminates(ctx, s));
   DEA_TRY(ctx, dea_solid_create_springs(ctx, s));
   DEA_TRY(ctx, dea_solid_field_create(ctx, s, options));
+  for (size_t i = 0; i < options->load_count; i++) {
+    DEA_TRY(ctx, dea_solid_add_load(ctx, s, &options->loads[i]));
+  }
   find_sizes(s);
   return DEA_OK;
 }

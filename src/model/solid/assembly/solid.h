@@ -62,6 +62,8 @@ struct dea_solid_options {
   const struct dea_solid_body *bodies;
   const int *body_of;
   const double *point_mass_kg; // [node_count] beside the mass of elements, copied; NULL: none
+  const struct dea_solid_load *loads; // [load_count] as by dea_solid_add_load
+  size_t load_count;
   const void *self;
   const struct dea_solid_settings *settings; // copied; NULL: dea_solid_settings_default
 };

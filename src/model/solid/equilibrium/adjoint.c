@@ -27,10 +27,19 @@ enum { STEPS = 200 };
 
 /* The row of a load's multiplier. */
 struct row {
-  size_t node;
-  double b[3], root; // root: L, 0 where the constraint is not held
+  int count, nodes[DEA_PIECE_NODES_MAX];
+  double b[DEA_PIECE_DOFS_MAX], root; // root: L, 0 where the constraint is not held
   double stiffness;
 };
+
+static double row_times(const struct row *row, const double *v)
+{
+  double sum = 0;
+  for (int i = 0; i < 3 * row->count; i++) {
+    sum += row->b[i] * v[3 * row->nodes[i / 3] + i % 3];
+  }
+  return sum;
+}
 
 /* Multipliers of elements and of loads are in other units, and each settles by itself. */
 enum { OF_ELEMENTS, OF_LOADS, KINDS };
@@ -94,9 +103,11 @@ static void find_rows(struct dea_adjoint *a)
       if (load->constraint != NULL) {
         load->constraint(load->self, i, a->s->state.u, &c);
       }
-      *row = (struct row){.node = (size_t)c.node, .stiffness = c.stiffness};
+      *row = (struct row){.stiffness = c.stiffness};
       row->root = c.held ? sqrt(c.weight) : 0;
-      for (int j = 0; j < 3 && row->root > 0; j++) {
+      row->count = c.held ? c.node_count : 0;
+      memcpy(row->nodes, c.nodes, (size_t)row->count * sizeof *row->nodes);
+      for (int j = 0; j < 3 * row->count; j++) {
         row->b[j] = c.slope[j] / row->root;
       }
       a->touches = a->touches || row->root > 0;
@@ -189,8 +200,8 @@ static void push(struct dea_adjoint *a, const double *nu, double *out)
   dea_solid_sum(out, a->dofs);
   for (size_t i = a->pressures; i < a->all; i++) {
     const struct row *row = &a->row[i - a->pressures];
-    for (size_t j = 0; j < 3; j++) {
-      out[3 * row->node + j] += nu[i] * row->b[j];
+    for (int j = 0; j < 3 * row->count; j++) {
+      out[3 * row->nodes[j / 3] + j % 3] += nu[i] * row->b[j];
     }
   }
 }
@@ -215,9 +226,7 @@ static void squeeze(const struct dea_adjoint *a, const double *v, double *out)
   }
   dea_solid_sum(out, a->pressures);
   for (size_t i = a->pressures; i < a->all; i++) {
-    const struct row *row = &a->row[i - a->pressures];
-    const double *at = v + 3 * row->node;
-    out[i] = row->b[0] * at[0] + row->b[1] * at[1] + row->b[2] * at[2];
+    out[i] = row_times(&a->row[i - a->pressures], v);
   }
 }
 
@@ -527,10 +536,7 @@ void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, do
   dea_solid_sum(out, a->pressures);
   for (size_t i = a->pressures; i < a->all; i++) {
     const struct row *row = &a->row[i - a->pressures];
-    const double *at = v + 3 * row->node;
-    out[i] = row->root > 0 ? row->stiffness / row->root *
-                                 (row->b[0] * at[0] + row->b[1] * at[1] + row->b[2] * at[2])
-                           : 0;
+    out[i] = row->root > 0 ? row->stiffness / row->root * row_times(row, v) : 0;
   }
 }
 

@@ -108,10 +108,22 @@ static double flat_tip(const struct dea_indenter *tip, const double r[3], double
   return distance;
 }
 
+static double plane_tip(const double *axis, const double r[3], double normal[3], double *hessian)
+{
+  for (int i = 0; i < 3; i++) {
+    normal[i] = -axis[i];
+  }
+  if (hessian != NULL) {
+    memset(hessian, 0, 9 * sizeof *hessian);
+  }
+  return normal[0] * r[0] + normal[1] * r[1] + normal[2] * r[2];
+}
+
 double dea_indenter_distance(const struct dea_indenter *tip, const double place_m[3],
                              const double x_m[3], double normal[3], double *hessian)
 {
   const double r[3] = {x_m[0] - place_m[0], x_m[1] - place_m[1], x_m[2] - place_m[2]};
-  return tip->shape == DEA_INDENTER_FLAT ? flat_tip(tip, r, normal, hessian)
-                                         : round_tip(tip, r, normal, hessian);
+  return tip->shape == DEA_INDENTER_FLAT    ? flat_tip(tip, r, normal, hessian)
+         : tip->shape == DEA_INDENTER_PLANE ? plane_tip(tip->axis, r, normal, hessian)
+                                            : round_tip(tip, r, normal, hessian);
 }

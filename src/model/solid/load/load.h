@@ -1,13 +1,13 @@
 /* Something beside the elements that stores energy by the displacements: a spring, a rigid tip, a
- * pressure (docs/theory/loads.md). It comes in pieces of a few nodes each: a face of an element,
- * whose nodes are coupled in the tangent anyway. */
+ * pressure, two surfaces that meet (docs/theory/loads.md). It comes in pieces of a few nodes each:
+ * of an element, whose nodes are coupled in the tangent anyway, or of the solid's couplings. */
 #pragma once
 
 #include "model/solid/point/part_material.h"
 
 #include <stddef.h>
 
-enum { DEA_PIECE_NODES_MAX = 16, DEA_PIECE_DOFS_MAX = 3 * DEA_PIECE_NODES_MAX };
+enum { DEA_PIECE_NODES_MAX = 17, DEA_PIECE_DOFS_MAX = 3 * DEA_PIECE_NODES_MAX };
 struct dea_load_piece {
   int node_count;
   int nodes[DEA_PIECE_NODES_MAX];
@@ -16,14 +16,14 @@ struct dea_load_piece {
   double K[DEA_PIECE_DOFS_MAX * DEA_PIECE_DOFS_MAX]; // [3 node_count][3 node_count], symmetric
 };
 
-/* The constraint C of a multiplier p, of one node: the energy has p C and, of the penalty k,
+/* The constraint C of a multiplier p, of a few nodes: the energy has p C and, of the penalty k,
  * k C^2 / (2 w). */
 struct dea_load_constraint {
   bool held; // false: the energy has neither at this state
-  int node;
-  double value, slope[3]; // C, and by the displacement of the node
-  double weight;          // w
-  double stiffness;       // k
+  int node_count, nodes[DEA_PIECE_NODES_MAX];
+  double value, slope[DEA_PIECE_DOFS_MAX]; // C, and by the displacements of the nodes
+  double weight;                           // w
+  double stiffness;                        // k
 };
 
 struct dea_solid_load {
@@ -34,6 +34,10 @@ struct dea_solid_load {
    */
   dea_status (*evaluate)(const void *self, size_t piece, const double *u, enum dea_eval_order level,
                          struct dea_load_piece *out);
+
+  /* The nodes of a piece that no element couples; returns their number. NULL: of elements. Such a
+   * load is among those that a solid is made with. */
+  int (*couples)(const void *self, size_t piece, int nodes[DEA_PIECE_NODES_MAX]);
 
   /* Of a load that a number of the whole, such as a volume, determines; NULL: of none. prepare: at
    * u, before elements and pieces there are evaluated. whole: what comes to the tangent beside them

@@ -1,29 +1,323 @@
-/* Contact with a rigid tip, without friction: E = int (<p - k g>^2 - p^2)/(2k) dA at the nodes of
- * the faces, and p <- <p - k g> in the outer loop. */
+/* Contact without friction, with a rigid tip or with another surface: E = int (<p - k g>^2 -
+ * p^2)/(2k) dA at the nodes of the faces, and p <- <p - k g> in the outer loop. */
 #include "model/solid/load/loads.h"
 
+#include "base/quadrature.h"
+
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 static const double tolerance_default = 1e-3;
-static const double gap_none = 1e-9; // of the tip's radius
+static const double gap_none = 1e-9; // of the length that gaps are compared with
 
 struct dea_contact {
-  const struct dea_surface *surface;
+  const struct dea_surface *surface, *other; // other: NULL: the tip
   struct dea_face_shape shape;
   struct dea_indenter tip;
   double stiffness, tolerance; // k, of the pressure
   bool held;                   // what has a pressure stays in touch, of any sign, without k
   double now[3], goal[3];      // place of the tip
   double *weight, *pressure;   // [face_count][points] areas; p
+  size_t *opposite;            // [face_count] face of the other surface
+  double (*start)[2];          // [face_count][points] place of it that is nearest at rest
 };
+
+// The gap ----------------------------------------------------------------------------------------
+
+static size_t points_of(const struct dea_contact *c)
+{
+  return (size_t)c->shape.points;
+}
+
+static size_t count_of(const struct dea_contact *c)
+{
+  return c->surface->face_count * points_of(c);
+}
+
+/* What the gap of a point depends on: its node, and those of the face that is opposite. */
+static int nodes_of(const struct dea_contact *c, size_t at, int nodes[DEA_PIECE_NODES_MAX])
+{
+  const size_t face = at / points_of(c);
+  nodes[0] = c->surface->nodes[face * DEA_FACE_NODES_MAX + at % points_of(c)];
+  if (c->other == NULL) {
+    return 1;
+  }
+  memcpy(nodes + 1, c->other->nodes + c->opposite[face] * DEA_FACE_NODES_MAX,
+         (size_t)c->other->face_nodes * sizeof *nodes);
+  return 1 + c->other->face_nodes;
+}
+
+static double dot(const double *a, const double *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Values and slopes of order 1 and 2 along one axis of a face, [3][order + 1]. */
+static void line_at(int order, double x, double out[3][DEA_HEX_ORDER_MAX + 1])
+{
+  const size_t count = (size_t)order + 1;
+  double nodes[DEA_HEX_ORDER_MAX + 1], value[DEA_HEX_ORDER_MAX + 1], slope[DEA_HEX_ORDER_MAX + 1];
+  dea_lobatto_nodes((size_t)order, nodes);
+  dea_lagrange(count, nodes, x, out[0], out[1]);
+  memset(out[2], 0, count * sizeof *out[2]);
+  for (size_t i = 0; i < count; i++) { // a slope is the sum of what it is at the nodes
+    dea_lagrange(count, nodes, nodes[i], value, slope);
+    for (size_t j = 0; j < count; j++) {
+      out[2][j] += slope[j] * out[1][i];
+    }
+  }
+}
+
+/* Where a face is nearest to a place: basis N [0], its slopes along both axes [1, 2] and what these
+ * and the place itself are there: x, a_1, a_2; curved: x,11, x,12, x,22. */
+struct nearest {
+  double N[3][DEA_FACE_NODES_MAX], x[3][3], curved[3][3];
+  double at[2];
+};
+
+static void sum_up(const double *N, const double (*x)[3], int count, double out[3])
+{
+  memset(out, 0, 3 * sizeof *out);
+  for (int a = 0; a < count; a++) {
+    for (int i = 0; i < 3; i++) {
+      out[i] += N[a] * x[a][i];
+    }
+  }
+}
+
+static void face_at(const int order[2], const double (*x)[3], struct nearest *out)
+{
+  double line[2][3][DEA_HEX_ORDER_MAX + 1], second[3][DEA_FACE_NODES_MAX];
+  const int count = (order[0] + 1) * (order[1] + 1);
+  line_at(order[0], out->at[0], line[0]);
+  line_at(order[1], out->at[1], line[1]);
+  for (int a = 0; a < count; a++) {
+    const int i = a % (order[0] + 1), j = a / (order[0] + 1);
+    out->N[0][a] = line[0][0][i] * line[1][0][j];
+    out->N[1][a] = line[0][1][i] * line[1][0][j];
+    out->N[2][a] = line[0][0][i] * line[1][1][j];
+    second[0][a] = line[0][2][i] * line[1][0][j];
+    second[1][a] = line[0][1][i] * line[1][1][j];
+    second[2][a] = line[0][0][i] * line[1][2][j];
+  }
+  for (int k = 0; k < 3; k++) {
+    sum_up(out->N[k], x, count, out->x[k]);
+    sum_up(second[k], x, count, out->curved[k]);
+  }
+}
+
+/* inverse of the symmetric {m[0], m[1]; m[1], m[2]}. */
+static void invert(const double m[3], double out[3])
+{
+  const double det = m[0] * m[2] - m[1] * m[1];
+  out[0] = m[2] / det;
+  out[1] = -m[1] / det;
+  out[2] = m[0] / det;
+}
+
+/* The place of a face (x [nodes][3]) that is nearest to p, by Newton's method from near->at on. Far
+ * from the face, where it may not settle, there is no contact. */
+static void find_nearest(const int order[2], const double (*x)[3], const double p[3],
+                         struct nearest *near)
+{
+  enum { TRIALS = 20 };
+  static const double close = 1e-13;
+  double step = 1;
+  for (int trial = 0; trial < TRIALS && step > close; trial++) {
+    double d[3], A[3], H[3];
+    face_at(order, x, near);
+    for (int i = 0; i < 3; i++) {
+      d[i] = p[i] - near->x[0][i];
+    }
+    const double *a = near->x[1], *b = near->x[2];
+    const double r[2] = {dot(d, a), dot(d, b)};
+    A[0] = dot(a, a) - dot(d, near->curved[0]);
+    A[1] = dot(a, b) - dot(d, near->curved[1]);
+    A[2] = dot(b, b) - dot(d, near->curved[2]);
+    invert(A, H);
+    const double s[2] = {H[0] * r[0] + H[1] * r[1], H[1] * r[0] + H[2] * r[1]};
+    step = fmax(fabs(s[0]), fabs(s[1]));
+    const double most = fmin(1, 1 / step); // no more than half of the face at once
+    near->at[0] += most * s[0];
+    near->at[1] += most * s[1];
+  }
+  face_at(order, x, near);
+}
+
+/* Second slopes of the gap by all displacements (docs/theory/loads.md):
+ * -[T' H M + M' H T + g M' H M + T' S T]. */
+static void bend(const struct nearest *near, const double n[3], double gap, int count, double *out)
+{
+  enum { DOFS = DEA_PIECE_DOFS_MAX };
+  double T[2][DOFS], M[2][DOFS], A[3], B[3], C[3], G[3], H[3], S[2][2];
+  const int dofs = 3 * count;
+  for (int k = 0; k < 2; k++) {
+    for (int i = 0; i < dofs; i++) {
+      const int a = i / 3 - 1; // of the face
+      T[k][i] = (a < 0 ? 1 : -near->N[0][a]) * near->x[1 + k][i % 3];
+      M[k][i] = a < 0 ? 0 : near->N[1 + k][a] * n[i % 3];
+    }
+  }
+  for (int k = 0; k < 3; k++) {
+    A[k] = dot(near->x[k < 2 ? 1 : 2], near->x[k < 1 ? 1 : 2]);
+    B[k] = dot(n, near->curved[k]);
+    C[k] = A[k] - gap * B[k];
+  }
+  invert(A, G);
+  invert(C, H);
+  const double BH[2][2] = {{B[0] * H[0] + B[1] * H[1], B[0] * H[1] + B[1] * H[2]},
+                           {B[1] * H[0] + B[2] * H[1], B[1] * H[1] + B[2] * H[2]}};
+  for (int k = 0; k < 2; k++) {
+    S[0][k] = G[0] * BH[0][k] + G[1] * BH[1][k];
+    S[1][k] = G[1] * BH[0][k] + G[2] * BH[1][k];
+  }
+  for (int i = 0; i < dofs; i++) {
+    for (int j = 0; j < dofs; j++) {
+      double sum = 0;
+      for (int k = 0; k < 2; k++) {
+        for (int l = 0; l < 2; l++) {
+          const double h = H[k + l];
+          sum += h * (T[k][i] * M[l][j] + M[k][i] * T[l][j] + gap * M[k][i] * M[l][j]) +
+                 S[k][l] * T[k][i] * T[l][j];
+        }
+      }
+      out[i * dofs + j] = -sum;
+    }
+  }
+}
+
+/* Places of a point's nodes at displacements u. */
+static void place_nodes(const struct dea_contact *c, const int *nodes, int count, const double *u,
+                        double (*x)[3])
+{
+  for (int a = 0; a < count; a++) {
+    for (int i = 0; i < 3; i++) {
+      const size_t k = 3 * (size_t)nodes[a] + (size_t)i;
+      x[a][i] = c->surface->grid->X[k] + u[k];
+    }
+  }
+}
+
+/* Of a point to the face that is opposite, whose outward normal points to it. */
+static double facing_gap(const struct dea_contact *c, int count, const double (*x)[3],
+                         struct nearest *near, double *slope, double *hessian)
+{
+  double n[3], from[3];
+  find_nearest(c->other->order, x + 1, x[0], near);
+  const double *a = near->x[1], *b = near->x[2];
+  for (int i = 0; i < 3; i++) {
+    n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    from[i] = x[0][i] - near->x[0][i];
+  }
+  const double length = sqrt(dot(n, n));
+  for (int i = 0; i < 3; i++) {
+    n[i] /= length;
+  }
+  for (int i = 0; i < 3 * count; i++) {
+    slope[i] = (i < 3 ? 1 : -near->N[0][i / 3 - 1]) * n[i % 3];
+  }
+  if (hessian != NULL) {
+    bend(near, n, dot(n, from), count, hessian);
+  }
+  return dot(n, from);
+}
+
+/* What the gap at a point is, and its slopes by the displacements of its nodes. */
+struct gap {
+  int count, nodes[DEA_PIECE_NODES_MAX];
+  double value, slope[DEA_PIECE_DOFS_MAX]; // [3 count]
+};
+
+/* hessian: [3 count][3 count], NULL where it is not wanted. */
+static struct gap gap_at(const struct dea_contact *c, size_t at, const double *u, double *hessian)
+{
+  struct gap gap;
+  double x[DEA_PIECE_NODES_MAX][3];
+  gap.count = nodes_of(c, at, gap.nodes);
+  place_nodes(c, gap.nodes, gap.count, u, x);
+  if (c->other == NULL) {
+    gap.value = dea_indenter_distance(&c->tip, c->now, x[0], gap.slope, hessian);
+  } else {
+    struct nearest near = {.at = {c->start[at][0], c->start[at][1]}};
+    gap.value = facing_gap(c, gap.count, (const double(*)[3])x, &near, gap.slope, hessian);
+  }
+  return gap;
+}
+
+// Making and moving ------------------------------------------------------------------------------
+
+/* Which columns of the plane mesh a face is over: the same sum and the same least one. */
+static void columns_of(const struct dea_surface *surface, size_t face, size_t out[2])
+{
+  out[0] = 0;
+  out[1] = SIZE_MAX;
+  for (int n = 0; n < surface->face_nodes; n++) {
+    const size_t node = (size_t)surface->nodes[face * DEA_FACE_NODES_MAX + (size_t)n],
+                 column = (size_t)surface->grid->column[node];
+    out[0] += column;
+    out[1] = column < out[1] ? column : out[1];
+  }
+}
+
+/* The place of a point on the face that is opposite: at the node of the same column. */
+static void find_start(struct dea_contact *c, size_t at)
+{
+  const int *order = c->other->order, *column = c->surface->grid->column;
+  int nodes[DEA_PIECE_NODES_MAX];
+  const int count = nodes_of(c, at, nodes);
+  double line[2][DEA_HEX_ORDER_MAX + 1];
+  dea_lobatto_nodes((size_t)order[0], line[0]);
+  dea_lobatto_nodes((size_t)order[1], line[1]);
+  for (int a = 0; a + 1 < count; a++) {
+    if (column[nodes[a + 1]] == column[nodes[0]]) {
+      c->start[at][0] = line[0][a % (order[0] + 1)];
+      c->start[at][1] = line[1][a / (order[0] + 1)];
+    }
+  }
+}
+
+/* The face of the other surface in the same column, and the places of it that points begin at. */
+static dea_status find_opposite(struct dea_context *ctx, struct dea_contact *c)
+{
+  for (size_t face = 0; face < c->surface->face_count; face++) {
+    size_t own[2], other[2] = {0}, k = 0;
+    columns_of(c->surface, face, own);
+    for (; k < c->other->face_count; k++) {
+      columns_of(c->other, k, other);
+      if (own[0] == other[0] && own[1] == other[1]) {
+        break;
+      }
+    }
+    if (k == c->other->face_count) {
+      return dea_fail(ctx, DEA_E_ARGUMENT, "a face in contact has no other one opposite");
+    }
+    c->opposite[face] = k;
+    for (size_t q = 0; q < points_of(c); q++) {
+      find_start(c, face * points_of(c) + q);
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status prepare(struct dea_context *ctx, struct dea_contact *c)
+{
+  dea_face_shape_create(c->surface, DEA_FACE_AT_NODES, &c->shape);
+  c->weight = dea_surface_weights(ctx, c->surface, &c->shape);
+  c->pressure = dea_alloc(ctx, count_of(c), sizeof *c->pressure);
+  c->opposite = dea_alloc(ctx, c->surface->face_count, sizeof *c->opposite);
+  c->start = dea_alloc(ctx, count_of(c), sizeof *c->start);
+  DEA_TRY_MEMORY(c->weight != NULL && c->pressure != NULL && c->opposite != NULL &&
+                 c->start != NULL);
+  return c->other != NULL ? find_opposite(ctx, c) : DEA_OK;
+}
 
 dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface *surface,
                               const struct dea_contact_options *options, struct dea_contact **out)
 {
   struct dea_indenter tip = options->tip;
   *out = NULL;
-  DEA_TRY(ctx, dea_indenter_check(ctx, &tip));
+  DEA_TRY(ctx, options->other == NULL ? dea_indenter_check(ctx, &tip) : DEA_OK);
   if (!(options->stiffness_Pa_per_m > 0) || !(options->tolerance >= 0)) {
     return dea_fail(ctx, DEA_E_ARGUMENT,
                     "contact needs a stiffness above 0 and a tolerance of 0 or more");
@@ -31,17 +325,16 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
   struct dea_contact *c = dea_alloc(ctx, 1, sizeof *c);
   DEA_TRY_MEMORY(c != NULL);
   c->surface = surface;
+  c->other = options->other;
   c->tip = tip;
   c->stiffness = options->stiffness_Pa_per_m;
   c->tolerance = options->tolerance > 0 ? options->tolerance : tolerance_default;
   memcpy(c->now, options->place_m, sizeof c->now);
   memcpy(c->goal, options->place_m, sizeof c->goal);
-  dea_face_shape_create(surface, DEA_FACE_AT_NODES, &c->shape);
-  c->weight = dea_surface_weights(ctx, surface, &c->shape);
-  c->pressure = dea_alloc(ctx, surface->face_count * (size_t)c->shape.points, sizeof *c->pressure);
-  if (c->weight == NULL || c->pressure == NULL) {
+  const dea_status status = prepare(ctx, c);
+  if (status != DEA_OK) {
     dea_contact_destroy(ctx, c);
-    return DEA_E_MEMORY;
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   *out = c;
   return DEA_OK;
@@ -52,6 +345,8 @@ void dea_contact_destroy(struct dea_context *ctx, struct dea_contact *contact)
   if (contact != NULL) {
     dea_free(ctx, contact->weight);
     dea_free(ctx, contact->pressure);
+    dea_free(ctx, contact->opposite);
+    dea_free(ctx, contact->start);
     dea_free(ctx, contact);
   }
 }
@@ -63,52 +358,35 @@ void dea_contact_move(struct dea_contact *contact, const double place_m[3])
 
 void dea_contact_hold(struct dea_contact *contact, const struct dea_contact *other)
 {
-  const size_t count = contact->surface->face_count * (size_t)contact->shape.points;
-  memcpy(contact->pressure, other->pressure, count * sizeof *contact->pressure);
+  memcpy(contact->pressure, other->pressure, count_of(contact) * sizeof *contact->pressure);
   contact->held = true;
 }
 
-/* Gap at a point of a face, which is one of its nodes. */
-static double gap_at(const struct dea_contact *c, size_t face, int point, const double *u,
-                     double normal[3], double *hessian)
-{
-  size_t node = (size_t)c->surface->nodes[face * DEA_FACE_NODES_MAX + (size_t)point];
-  const double *X = c->surface->grid->X + 3 * node, *v = u + 3 * node;
-  const double x[3] = {X[0] + v[0], X[1] + v[1], X[2] + v[2]};
-  return dea_indenter_distance(&c->tip, c->now, x, normal, hessian);
-}
+// As a load --------------------------------------------------------------------------------------
 
-static dea_status evaluate(const void *self, size_t piece, const double *u,
-                           enum dea_eval_order level, struct dea_load_piece *out)
+static dea_status evaluate(const void *self, size_t at, const double *u, enum dea_eval_order level,
+                           struct dea_load_piece *out)
 {
   const struct dea_contact *c = self;
-  int points = c->shape.points, dofs = 3 * points;
-  double k = c->stiffness;
-  bool any = false;
-  out->energy_J = 0;
-  memset(out->g, 0, (size_t)dofs * sizeof *out->g);
-  memset(out->K, 0, level >= DEA_TANGENT ? (size_t)(dofs * dofs) * sizeof *out->K : 0);
-  for (int q = 0; q < points; q++) {
-    size_t at = piece * (size_t)points + (size_t)q;
-    double n[3], H[9], w = c->weight[at], p = c->pressure[at];
-    double gap = gap_at(c, piece, q, u, n, level >= DEA_TANGENT ? H : NULL);
-    // NAN becomes 0 here: u is checked by the elements
-    double push = c->held ? p : fmax(p - k * gap, 0);
-    double bends = level == DEA_TANGENT_PREDICTED ? p : push;
-    // (push^2 - p^2) / (2 k), without the difference where k is small
-    out->energy_J -= w * (push != 0 ? gap * (p + push) / 2 : p * p / (2 * k));
-    any = any || push != 0 || p != 0;
-    for (int i = 0; i < 3 && push != 0; i++) {
-      out->g[3 * q + i] -= w * push * n[i];
-      for (int j = 0; j < 3 && level >= DEA_TANGENT; j++) {
-        out->K[(3 * q + i) * dofs + 3 * q + j] +=
-            w * ((c->held ? 0 : k) * n[i] * n[j] - bends * H[3 * i + j]);
-      }
+  const bool bends = level >= DEA_TANGENT;
+  const struct gap gap = gap_at(c, at, u, bends ? out->K : NULL);
+  const double k = c->stiffness, w = c->weight[at], p = c->pressure[at];
+  const int dofs = 3 * gap.count;
+  // NAN becomes 0 here: u is checked by the elements
+  const double push = c->held ? p : fmax(p - k * gap.value, 0);
+  const double turn = level == DEA_TANGENT_PREDICTED && push != 0 ? p : push;
+  // (push^2 - p^2) / (2 k), without the difference where k is small
+  out->energy_J = -w * (push != 0 ? gap.value * (p + push) / 2 : p * p / (2 * k));
+  // of two surfaces K has room for each, in touch or not
+  out->node_count = push != 0 || p != 0 || c->other != NULL ? gap.count : 0;
+  memcpy(out->nodes, gap.nodes, (size_t)gap.count * sizeof *out->nodes);
+  for (int i = 0; i < dofs; i++) {
+    out->g[i] = push != 0 ? -w * push * gap.slope[i] : 0;
+    for (int j = 0; j < dofs && bends; j++) {
+      double *K = &out->K[i * dofs + j];
+      *K = push != 0 ? w * ((c->held ? 0 : k) * gap.slope[i] * gap.slope[j] - turn * *K) : 0;
     }
   }
-  out->node_count = any ? points : 0;
-  memcpy(out->nodes, c->surface->nodes + piece * DEA_FACE_NODES_MAX,
-         (size_t)points * sizeof *out->nodes);
   return DEA_OK;
 }
 
@@ -117,10 +395,9 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
 static double update(void *self, const double *u)
 {
   struct dea_contact *c = self;
-  size_t points = (size_t)c->shape.points;
-  double way = 0, whole = 0, largest = 0, n[3];
-  for (size_t at = 0; at < c->surface->face_count * points; at++) {
-    double p = c->pressure[at], gap = gap_at(c, at / points, (int)(at % points), u, n, NULL);
+  double way = 0, whole = 0, largest = 0;
+  for (size_t at = 0; at < count_of(c); at++) {
+    const double p = c->pressure[at], gap = gap_at(c, at, u, NULL).value;
     c->pressure[at] = fmax(p - c->stiffness * gap, 0);
     way += c->weight[at] * fabs(c->pressure[at] - p);
     largest = fmax(largest, fabs(c->pressure[at] - p));
@@ -130,18 +407,24 @@ static double update(void *self, const double *u)
   return whole > 0 ? fmin(gap_error, way / (c->tolerance * whole)) : gap_error;
 }
 
+static double change_of(const struct gap *gap, const double *step)
+{
+  double sum = gap->value;
+  for (int i = 0; i < 3 * gap->count; i++) {
+    sum += gap->slope[i] * step[3 * gap->nodes[i / 3] + i % 3];
+  }
+  return sum;
+}
+
 /* A step takes the gap away where the surface touches: p - k (g + n . step), docs/theory/loads.md.
  */
 static void predict(void *self, const double *u, const double *step, double share)
 {
   struct dea_contact *c = self;
-  size_t points = (size_t)c->shape.points;
-  for (size_t at = 0; at < c->surface->face_count * points; at++) {
-    size_t face = at / points, point = at % points;
-    const double *s = step + 3 * c->surface->nodes[face * DEA_FACE_NODES_MAX + point];
-    double p = c->pressure[at], n[3], gap = gap_at(c, face, (int)point, u, n, NULL);
-    double left = gap + n[0] * s[0] + n[1] * s[1] + n[2] * s[2];
-    c->pressure[at] = p > c->stiffness * gap ? fmax(p - share * c->stiffness * left, 0) : 0;
+  for (size_t at = 0; at < count_of(c); at++) {
+    const double p = c->pressure[at], k = c->stiffness;
+    const struct gap gap = gap_at(c, at, u, NULL);
+    c->pressure[at] = p > k * gap.value ? fmax(p - share * k * change_of(&gap, step), 0) : 0;
   }
 }
 
@@ -150,30 +433,53 @@ static void constraint(const void *self, size_t at, const double *u,
                        struct dea_load_constraint *out)
 {
   const struct dea_contact *c = self;
-  size_t points = (size_t)c->shape.points;
-  double n[3], gap = gap_at(c, at / points, (int)(at % points), u, n, NULL), w = c->weight[at];
-  *out = (struct dea_load_constraint){
-      .held = c->pressure[at] > c->stiffness * gap,
-      .node = c->surface->nodes[at / points * DEA_FACE_NODES_MAX + at % points],
-      .value = -w * gap,
-      .slope = {-w * n[0], -w * n[1], -w * n[2]},
-      .weight = w,
-      .stiffness = c->stiffness};
+  const struct gap gap = gap_at(c, at, u, NULL);
+  const double w = c->weight[at];
+  *out = (struct dea_load_constraint){.held = c->pressure[at] > c->stiffness * gap.value,
+                                      .node_count = gap.count,
+                                      .value = -w * gap.value,
+                                      .weight = w,
+                                      .stiffness = c->stiffness};
+  memcpy(out->nodes, gap.nodes, (size_t)gap.count * sizeof *out->nodes);
+  for (int i = 0; i < 3 * gap.count; i++) {
+    out->slope[i] = -w * gap.slope[i];
+  }
 }
+
+static int couples(const void *self, size_t at, int nodes[DEA_PIECE_NODES_MAX])
+{
+  return nodes_of(self, at, nodes);
+}
+
+struct dea_solid_load dea_contact_load(struct dea_contact *contact)
+{
+  return (struct dea_solid_load){.self = contact,
+                                 .piece_count = count_of(contact),
+                                 .evaluate = evaluate,
+                                 .couples = contact->other != NULL ? couples : NULL,
+                                 .parameter_count = contact->other == NULL ? 3 : 0,
+                                 .now = contact->now,
+                                 .goal = contact->goal,
+                                 .multiplier_count = count_of(contact),
+                                 .multiplier = contact->pressure,
+                                 .update = update,
+                                 .predict = predict,
+                                 .constraint = constraint};
+}
+
+// What it does -----------------------------------------------------------------------------------
 
 void dea_contact_force_slope(const struct dea_contact *contact, const double *u, int component,
                              double factor, double *by_u, double *by_pressure)
 {
-  size_t points = (size_t)contact->shape.points;
-  for (size_t at = 0; at < contact->surface->face_count * points; at++) {
-    double n[3], H[9], w = factor * contact->weight[at], p = contact->pressure[at];
-    size_t face = at / points, point = at % points;
+  for (size_t at = 0; at < count_of(contact); at++) {
+    const double w = factor * contact->weight[at], p = contact->pressure[at];
+    double H[DEA_PIECE_DOFS_MAX * DEA_PIECE_DOFS_MAX];
     if (p > 0) {
-      double *by = by_u + 3 * (size_t)contact->surface->nodes[face * DEA_FACE_NODES_MAX + point];
-      gap_at(contact, face, (int)point, u, n, H);
-      by_pressure[at] -= w * n[component];
-      for (int j = 0; j < 3; j++) {
-        by[j] -= w * p * H[3 * component + j];
+      const struct gap gap = gap_at(contact, at, u, H);
+      by_pressure[at] -= w * gap.slope[component];
+      for (int j = 0; j < 3 * gap.count; j++) {
+        by_u[3 * gap.nodes[j / 3] + j % 3] -= w * p * H[3 * gap.count * component + j];
       }
     }
   }
@@ -181,31 +487,40 @@ void dea_contact_force_slope(const struct dea_contact *contact, const double *u,
 
 void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3])
 {
-  size_t points = (size_t)contact->shape.points;
   force_N[0] = force_N[1] = force_N[2] = 0;
-  for (size_t at = 0; at < contact->surface->face_count * points; at++) {
-    double n[3], push = contact->weight[at] * contact->pressure[at];
+  for (size_t at = 0; at < count_of(contact); at++) {
+    const double push = contact->weight[at] * contact->pressure[at];
     if (push > 0) {
-      gap_at(contact, at / points, (int)(at % points), u, n, NULL);
+      const struct gap gap = gap_at(contact, at, u, NULL);
       for (int i = 0; i < 3; i++) {
-        force_N[i] -= push * n[i];
+        force_N[i] -= push * gap.slope[i];
       }
     }
   }
 }
 
-struct dea_solid_load dea_contact_load(struct dea_contact *contact)
+double dea_contact_area(const struct dea_contact *contact)
 {
-  return (struct dea_solid_load){.self = contact,
-                                 .piece_count = contact->surface->face_count,
-                                 .evaluate = evaluate,
-                                 .parameter_count = 3,
-                                 .now = contact->now,
-                                 .goal = contact->goal,
-                                 .multiplier_count =
-                                     contact->surface->face_count * (size_t)contact->shape.points,
-                                 .multiplier = contact->pressure,
-                                 .update = update,
-                                 .predict = predict,
-                                 .constraint = constraint};
+  double sum = 0;
+  for (size_t at = 0; at < count_of(contact); at++) {
+    sum += contact->pressure[at] > 0 ? contact->weight[at] : 0;
+  }
+  return sum;
+}
+
+double dea_contact_slide(const struct dea_contact *contact, const double *u)
+{
+  double most = 0;
+  for (size_t at = 0; at < count_of(contact) && contact->other != NULL; at++) {
+    if (contact->pressure[at] > 0) {
+      const double *start = contact->start[at];
+      int nodes[DEA_PIECE_NODES_MAX];
+      double x[DEA_PIECE_NODES_MAX][3];
+      struct nearest near = {.at = {start[0], start[1]}};
+      place_nodes(contact, nodes, nodes_of(contact, at, nodes), u, x);
+      find_nearest(contact->other->order, (const double(*)[3])(x + 1), x[0], &near);
+      most = fmax(most, fmax(fabs(near.at[0] - start[0]), fabs(near.at[1] - start[1])) / 2);
+    }
+  }
+  return most;
 }

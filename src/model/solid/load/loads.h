@@ -81,12 +81,16 @@ void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa);
 double dea_pressure_get(const struct dea_pressure *pressure);
 struct dea_solid_load dea_pressure_load(struct dea_pressure *pressure);
 
-/* ---- contact with a rigid tip, without friction ---- */
+/* ---- contact with a rigid tip or another surface, without friction ---- */
 
 struct dea_contact;
 struct dea_contact_options {
-  struct dea_indenter tip;
-  double place_m[3]; // of the tip at first, see dea_indenter_distance
+  struct dea_indenter tip; // of another surface the radius alone: a length to compare gaps with
+  double place_m[3];       // of the tip at first, see dea_indenter_distance
+  /* In place of the tip: faces of the same grid, lent, one in the column of each face of the
+   * surface, which face it. Each point of the surface stays with the face that it is opposite at
+   * rest, drawn out beyond its edges where it slides: dea_contact_slide. NULL: the tip. */
+  const struct dea_surface *other;
   /* Penalty: the answer does not depend on it, the number of rounds does. Some ten times the
    * stiffness per area behind the surface is good: a modulus over an element's size. */
   double stiffness_Pa_per_m;
@@ -98,8 +102,14 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
 void dea_contact_destroy(struct dea_context *ctx, struct dea_contact *contact);
 /* Where the next solve brings the tip. */
 void dea_contact_move(struct dea_contact *contact, const double place_m[3]);
-/* Of the surface on the tip at the last equilibrium, u: its displacements. */
+/* Of the surface on the tip, or on the other surface, at the last equilibrium, u: its
+ * displacements.
+ */
 void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3]);
+/* Reference area of the surface that touches [m^2]. */
+double dea_contact_area(const struct dea_contact *contact);
+/* How far what touches another surface has slid along it, at most, over the size of its face. */
+double dea_contact_slide(const struct dea_contact *contact, const double *u);
 /* Adds `factor` times the slopes of a component of that force: by u [node_count][3], and by the
  * pressures, the multipliers of the load, of those that there are. */
 void dea_contact_force_slope(const struct dea_contact *contact, const double *u, int component,
