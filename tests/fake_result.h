@@ -34,7 +34,7 @@ static inline struct dea_load_point fake_point(double s, double scale, bool lump
     p.centre_z_m = 12e-3 * sqrt(fmax(0.0, s - 1.0));
     p.fibre_tip_z_m = 11e-3 * sqrt(fmax(0.0, s - 1.0));
     p.force_N = 0.02 * (s - 1.0);
-    p.told = 1u << DEA_FLAG_BOUND;
+    p.own_flags = 1u << DEA_FLAG_BOUND;
   }
   p.stable = s < 4.0 / 3.0;
   p.unstable_modes = p.stable ? 0 : 1;

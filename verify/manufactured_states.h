@@ -3,9 +3,9 @@
 
 #include "manufactured.h"
 
-#include "model/solid/adapter/solid_state.h"
 #include "model/solid/element/hex.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/model3d/solid_state.h"
 
 static struct dea_context *states_ctx;
 static const double yeoh[DEA_LAW_PARAM_MAX] = {0.5, -0.02, 0.01};

@@ -286,8 +286,8 @@ def verdict_of(summary, code, stderr):
         refused = code in (2, 3) or (code == 5 and "memory" in stderr)
         return ("refused" if refused else "no answer, exit %d" % code), stderr.strip()[-300:]
     if summary.get("complete"):
-        leapt = any("states" in point.get("flags", []) for point in summary["points"])
-        return ("complete, in another state" if leapt else "complete"), ""
+        snapped = any("states" in point.get("flags", []) for point in summary["points"])
+        return ("complete, in another state" if snapped else "complete"), ""
     why = summary.get("stopped", "")
     verdict = summary.get("verdict", "")
     if verdict:
@@ -342,8 +342,8 @@ def lost_between(summary):
 
 
 def last_taut(mine, other):
-    """Stretches at the last voltage at which both films keep their tension, and neither has leapt:
-    of waves the flat one knows nothing, and a leap is an event. None: there is none above 0 V."""
+    """Stretches at the last voltage at which both films keep their tension, and neither has snapped:
+    of waves the flat one knows nothing, and a snap-through is an event. None: there is none above 0 V."""
     both = [p for p in zip(mine, other) if p[0]["voltage_V"] > 0 and
             all(x.get("min_tension_N_per_m", 0) >= 0 and "states" not in x.get("flags", [])
                 for x in p)]
@@ -364,7 +364,7 @@ def differs(mine, other, within):
     """What two summaries of one disc do not agree on; "" where they do, None where nothing tells:
     the flat model's limits say nothing of a film that has lost its tension, nor do points whose
     smallest tension is that at the rim of a stiff electrode, where a solid film's is singular.
-    Pull-in is an event, whether the film has ended there or has leapt past it."""
+    Pull-in is an event, whether the film has ended there or has snapped past it."""
     both = (mine, other)
     taut = last_taut(mine["points"], other["points"])
     if taut and abs(taut[0] - taut[1]) > within * abs(taut[1] - 1) + 2e-3:

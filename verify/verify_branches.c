@@ -8,10 +8,10 @@
 #include "design/design.h"
 #include "model/model.h"
 #include "model/solid/actuator/disc_mesh.h"
-#include "model/solid/adapter/buckling_branch.h"
-#include "model/solid/adapter/solver_state.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/model3d/buckling_branch.h"
+#include "model/solid/model3d/solver_state.h"
 #include "study/design_file.h"
 
 extern const struct dea_model_type dea_solid_module;

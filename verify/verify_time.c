@@ -2,8 +2,8 @@
 #include "film_blocks.h"
 
 #include "model/model.h"
-#include "model/solid/adapter/solid_state.h"
 #include "model/solid/equilibrium/modes.h"
+#include "model/solid/model3d/solid_state.h"
 #include "model/solid/motion/response.h"
 
 static bool small;

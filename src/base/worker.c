@@ -71,7 +71,7 @@ const char *dea_ended_by(int how, char out[DEA_ENDED_BY])
 }
 
 /* The whole of the other process; returns its exit code. */
-static int work_aside(struct dea_context *ctx, dea_worker_work work, void *user, int socket)
+static int run_worker(struct dea_context *ctx, dea_worker_work work, void *user, int socket)
 {
   struct dea_bytes bytes = {.ctx = ctx}, findings = {.ctx = ctx};
   struct head head;
@@ -121,48 +121,48 @@ dea_status dea_fork_beside(struct dea_context *ctx, pid_t *process, int *socket)
 }
 
 dea_status dea_worker_start(struct dea_context *ctx, dea_worker_work work, void *user,
-                            struct dea_worker *aside)
+                            struct dea_worker *worker)
 {
   pid_t process = -1;
   int socket = -1;
   DEA_TRY(ctx, dea_fork_beside(ctx, &process, &socket));
   if (process == 0) {
-    _exit(work_aside(ctx, work, user, socket));
+    _exit(run_worker(ctx, work, user, socket));
   }
-  *aside = (struct dea_worker){process, socket, {.ctx = ctx}, true, false};
+  *worker = (struct dea_worker){process, socket, {.ctx = ctx}, true, false};
   return DEA_OK;
 }
 
 /* Its end; nothing of one that did not hand back all counts. */
-static void reap(struct dea_worker *aside)
+static void reap(struct dea_worker *worker)
 {
   int how = 0;
-  while (waitpid(aside->process, &how, 0) < 0 && errno == EINTR) {
+  while (waitpid(worker->process, &how, 0) < 0 && errno == EINTR) {
   }
-  close(aside->socket);
-  aside->process = 0;
-  aside->said.length = WIFEXITED(how) && WEXITSTATUS(how) == 0 ? aside->said.length : 0;
+  close(worker->socket);
+  worker->process = 0;
+  worker->said.length = WIFEXITED(how) && WEXITSTATUS(how) == 0 ? worker->said.length : 0;
 }
 
 /* Some of what it says, or its end. */
-static dea_status receive(struct dea_context *ctx, struct dea_worker *aside)
+static dea_status receive(struct dea_context *ctx, struct dea_worker *worker)
 {
   char chunk[CHUNK];
-  const ssize_t n = recv(aside->socket, chunk, sizeof chunk, 0);
+  const ssize_t n = recv(worker->socket, chunk, sizeof chunk, 0);
   if (n > 0) {
-    dea_bytes_add(&aside->said, chunk, (size_t)n);
+    dea_bytes_add(&worker->said, chunk, (size_t)n);
   } else if (n == 0 || errno != EINTR) {
-    reap(aside);
+    reap(worker);
   }
-  return aside->said.failed ? dea_context_status(ctx) : DEA_OK;
+  return worker->said.failed ? dea_context_status(ctx) : DEA_OK;
 }
 
 /* Tells one that this process was interrupted, once. */
-static void send_status(const struct dea_context *ctx, struct dea_worker *aside)
+static void send_status(const struct dea_context *ctx, struct dea_worker *worker)
 {
-  if (!aside->told && dea_interrupted(ctx)) {
-    shutdown(aside->socket, SHUT_WR);
-    aside->told = true;
+  if (!worker->asked_to_stop && dea_interrupted(ctx)) {
+    shutdown(worker->socket, SHUT_WR);
+    worker->asked_to_stop = true;
   }
 }
 
@@ -192,19 +192,20 @@ dea_status dea_worker_wait(struct dea_context *ctx, struct dea_worker *all, size
 }
 
 /* false: it has died. */
-static bool read_head(const struct dea_worker *aside, struct head *head)
+static bool read_head(const struct dea_worker *worker, struct head *head)
 {
-  const bool whole = aside->said.length >= sizeof *head;
+  const bool whole = worker->said.length >= sizeof *head;
   if (whole) {
-    memcpy(head, aside->said.data, sizeof *head);
+    memcpy(head, worker->said.data, sizeof *head);
   }
-  return whole && aside->said.length == sizeof *head + head->bytes + head->findings;
+  return whole && worker->said.length == sizeof *head + head->bytes + head->findings;
 }
 
-bool dea_worker_failed(const struct dea_worker *aside)
+bool dea_worker_failed(const struct dea_worker *worker)
 {
   struct head head;
-  return aside->begun && aside->process == 0 && !(read_head(aside, &head) && head.status == DEA_OK);
+  return worker->begun && worker->process == 0 &&
+         !(read_head(worker, &head) && head.status == DEA_OK);
 }
 
 static dea_status read_findings(struct dea_context *ctx, const char *from, size_t length)
@@ -225,29 +226,29 @@ static dea_status read_findings(struct dea_context *ctx, const char *from, size_
   return DEA_OK;
 }
 
-dea_status dea_worker_collect(struct dea_context *ctx, const struct dea_worker *aside,
+dea_status dea_worker_collect(struct dea_context *ctx, const struct dea_worker *worker,
                               const char **bytes, size_t *length)
 {
   struct head head;
   *bytes = NULL;
   *length = 0;
-  if (!read_head(aside, &head)) {
+  if (!read_head(worker, &head)) {
     return dea_fail(ctx, DEA_E_TOOL, "a process of this run has died");
   }
-  *bytes = aside->said.data + sizeof head;
+  *bytes = worker->said.data + sizeof head;
   *length = head.bytes;
   DEA_TRY(ctx, read_findings(ctx, *bytes + head.bytes, head.findings));
   return head.status == DEA_OK ? DEA_OK : dea_fail(ctx, head.status, "%s", head.message);
 }
 
-void dea_worker_end(struct dea_worker *aside)
+void dea_worker_end(struct dea_worker *worker)
 {
-  if (aside->process > 0) {
-    kill(aside->process, SIGKILL);
-    reap(aside);
+  if (worker->process > 0) {
+    kill(worker->process, SIGKILL);
+    reap(worker);
   }
-  if (aside->begun) {
-    dea_bytes_free(&aside->said);
+  if (worker->begun) {
+    dea_bytes_free(&worker->said);
   }
-  *aside = (struct dea_worker){0};
+  *worker = (struct dea_worker){0};
 }

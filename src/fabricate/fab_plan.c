@@ -188,10 +188,10 @@ static void place_marks(struct dea_fab_plan *plan)
   const double *last = plan->pad_count > 0 ? plan->pad[plan->pad_count - 1].at_m : NULL;
   const double from = last != NULL ? atan2(last[1], last[0]) : 0;
   const double *first = plan->pad_count > 1 ? plan->pad[0].at_m : NULL;
-  double way = first != NULL ? atan2(first[1], first[0]) - from : pi;
-  way -= 2 * pi * floor(way / (2 * pi));
-  const bool wider = way >= pi * (1 - 1e-9);
-  const double two = wider ? way : way - 2 * pi, one = wider ? way - 2 * pi : way;
+  double turn = first != NULL ? atan2(first[1], first[0]) - from : pi;
+  turn -= 2 * pi * floor(turn / (2 * pi));
+  const bool wider = turn >= pi * (1 - 1e-9);
+  const double two = wider ? turn : turn - 2 * pi, one = wider ? turn - 2 * pi : turn;
   const double angle[DEA_FAB_MARKS] = {from + two / 3, from + 2 * two / 3, from + 0.4 * one};
   const double centre[2] = {0, 0}, holder[2] = {plan->holder_m, plan->holder_m};
   for (int m = 0; m < DEA_FAB_MARKS; m++) {

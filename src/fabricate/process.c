@@ -334,7 +334,7 @@ static void write_stretch(const struct dea_layout_ply *ply, char *out)
 }
 
 /* How a ply comes to what is there. */
-enum way { FIRST, ABOVE, BELOW };
+enum order { FIRST, ABOVE, BELOW };
 
 static void add_layers(const struct sheet *s, size_t i)
 {
@@ -394,15 +394,15 @@ static void add_film_step(const struct sheet *s, size_t i, const char *where)
   }
 }
 
-static void add_ply_step(const struct sheet *s, size_t i, enum way way)
+static void add_ply_step(const struct sheet *s, size_t i, enum order order)
 {
   const struct dea_layout_ply *ply = &s->layout->plies[i];
   const bool film = dea_ply_is_blank(s->layout, i);
   const struct dea_fab_plan *plan = &s->w->plan;
   char where[WORDS] = "";
-  if (way != FIRST) {
+  if (order != FIRST) {
     snprintf(where, sizeof where, ". %s what is there%s, marks over marks",
-             film ? "Lay it onto" : "Bond it to", way == BELOW ? ", from below" : "");
+             film ? "Lay it onto" : "Bond it to", order == BELOW ? ", from below" : "");
   } else if (film) {
     snprintf(where, sizeof where, ". Fix it on the frame, holes over the marks%s",
              plan->pad_count > 0 && plan->window_m > 0 ? ", windows over the pads below" : "");

@@ -78,8 +78,8 @@ static dea_status sheet_layout(struct dea_context *ctx, const struct dea_worksho
 void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out_m[2])
 {
   const int row = copy / layout->columns;
-  double aside = copy % layout->columns * layout->pitch_m[0];
-  out_m[0] = layout->first_m[0] + (layout->mirrored ? -aside : aside);
+  double offset_m = copy % layout->columns * layout->pitch_m[0];
+  out_m[0] = layout->first_m[0] + (layout->mirrored ? -offset_m : offset_m);
   out_m[1] = layout->first_m[1] - row * layout->pitch_m[1];
 }
 

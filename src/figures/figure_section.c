@@ -26,7 +26,7 @@ static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
   }
   dea_free(ctx, found);
   DEA_TRY(ctx, status);
-  series->aside = look->aside;
+  series->secondary = look->secondary;
   return DEA_OK;
 }
 
@@ -41,7 +41,7 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
   char words[DEA_FLAGS_SIZE];
   unsigned doubts = dea_result_doubts(result, record->model, record->voltage_V);
   look.colour = doubts != 0 && !all_doubtful ? DEA_GREY : look.colour;
-  look.aside = doubts != 0;
+  look.secondary = doubts != 0;
   snprintf(look.title, sizeof look.title, "%.4g kV%s%s", 1e-3 * record->voltage_V,
            doubts != 0 ? ": " : "", dea_flags_text(doubts, words));
   const double angle = record->mesh->fibres > 0 ? record->mesh->symmetry_angle : 0;

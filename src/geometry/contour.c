@@ -34,9 +34,9 @@ struct dea_piece dea_contour_piece(const struct dea_contour *contour, size_t i)
 void dea_piece_tangent(const struct dea_piece *piece, bool at_end, double out[2])
 {
   if (piece->arc) {
-    double angle = piece->start + (at_end ? piece->sweep : 0), way = piece->sweep > 0 ? 1 : -1;
-    out[0] = -way * sin(angle);
-    out[1] = way * cos(angle);
+    double angle = piece->start + (at_end ? piece->sweep : 0), sense = piece->sweep > 0 ? 1 : -1;
+    out[0] = -sense * sin(angle);
+    out[1] = sense * cos(angle);
     return;
   }
   double dx = piece->to[0] - piece->from[0], dy = piece->to[1] - piece->from[1];

@@ -96,9 +96,9 @@ static struct near nearest(const struct dea_piece *a, const struct dea_piece *b)
 static void normal_at(const struct dea_piece *piece, const double x[2], double out[2])
 {
   if (piece->arc) {
-    double way = piece->sweep > 0 ? -1 : 1;
-    out[0] = way * (x[0] - piece->centre[0]) / piece->radius_m;
-    out[1] = way * (x[1] - piece->centre[1]) / piece->radius_m;
+    double side = piece->sweep > 0 ? -1 : 1;
+    out[0] = side * (x[0] - piece->centre[0]) / piece->radius_m;
+    out[1] = side * (x[1] - piece->centre[1]) / piece->radius_m;
     return;
   }
   double t[2];

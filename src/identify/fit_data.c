@@ -379,19 +379,19 @@ static dea_status build(struct dea_arena *arena, struct work *w)
   DEA_TRY(w->ctx, check_reach(w));
   if (w->errors == 0) {
     // the way goes through all rows, also those that are left out
-    struct dea_coupon way = {
+    struct dea_coupon path = {
         .mode = out->coupon.mode, .rows = w->raw->rows, .stretch = out->stretch};
     if (out->time_s != NULL) {
-      DEA_TRY(w->ctx, dea_coupon_follow(arena, out->time_s, ramp, &way));
+      DEA_TRY(w->ctx, dea_coupon_follow(arena, out->time_s, ramp, &path));
     }
-    out->coupon = way;
+    out->coupon = path;
     DEA_TRY(w->ctx, cut(w));
     DEA_TRY(w->ctx, check_count(w));
-    for (size_t i = 0, k = 0; i < out->rows && way.node_count > 0; i++) {
+    for (size_t i = 0, k = 0; i < out->rows && path.node_count > 0; i++) {
       while (w->raw->line[k] != out->line[i]) {
         k++;
       }
-      out->coupon.node_of_row[i] = way.node_of_row[k];
+      out->coupon.node_of_row[i] = path.node_of_row[k];
     }
     out->coupon.rows = out->rows;
   }

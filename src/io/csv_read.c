@@ -123,7 +123,7 @@ static dea_status read_rows(struct reader *r, struct dea_measurement *m)
     const double modes = state_of(r, MODES, row, 0);
     point.stable = state_of(r, STABLE, row, point.stable) != 0;
     point.unstable_modes = modes > 0 && modes < 1e9 ? (int)modes : 0;
-    point.told = (unsigned)state_of(r, FLAGS, row, 0);
+    point.own_flags = (unsigned)state_of(r, FLAGS, row, 0);
     m->std[row] = std;
     DEA_TRY(r->ctx, dea_curve_add_point(r->ctx, &m->curve, &point));
   }

@@ -113,7 +113,7 @@ static void get_points(struct h5 *h, hid_t group, struct dea_arena *memory,
   if (dea_h5_has(h, group, "flags")) { // not in files of older versions
     dea_h5_get_array(h, group, "flags", H5T_NATIVE_INT, n, whole);
     for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
-      (*points)[i].told = (unsigned)whole[i];
+      (*points)[i].own_flags = (unsigned)whole[i];
     }
   }
   dea_free(h->ctx, whole);

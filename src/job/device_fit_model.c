@@ -122,7 +122,7 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
       points[group->first + k] = point;
       points[group->first + k].monitors = dea_monitor_values_copy(&model->monitors, point.monitors);
       left = left || (model->type->passed != NULL && model->type->passed(m) != NULL);
-      if (left && model->states != NULL) { // it has come here by a leap
+      if (left && model->states != NULL) { // it has come here by a snap-through
         drop_state(model, &model->states[group->first + k]);
       }
       model->doubtful = model->doubtful || left;

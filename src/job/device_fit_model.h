@@ -75,7 +75,7 @@ dea_status dea_device_model_points(struct dea_device_model *model, const double 
 /* The same of all stops, without a warm start, as a sweep of its own would find them; points:
  * [stop_count], written to. from: begun from the states of the design of these numbers, which are
  * kept for the next call (dea_device_model_end); not where one of the two is slack, unstable or
- * leaps, or none is found so; NULL: from none. The answer depends on `from` and p alone. */
+ * snaps, or none is found so; NULL: from none. The answer depends on `from` and p alone. */
 dea_status dea_device_model_sweep(struct dea_device_model *model, const double *from,
                                   const double *p, struct dea_load_point *points);
 /* A parameter, a text of a fit file, with what the design says of it: unit, limits, value; where it

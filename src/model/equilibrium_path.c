@@ -276,15 +276,15 @@ static dea_status find_rest(struct dea_path *path)
 static dea_status ramp_to_rest(struct dea_path *path)
 {
   static const double least = 1e-6;
-  double share = 0, more = 0.5;
-  path->system.ramp(path->system.self, share);
+  double fraction = 0, more = 0.5;
+  path->system.ramp(path->system.self, fraction);
   dea_status status = find_rest(path);
-  while (status == DEA_OK && share < 1) {
-    double next = fmin(share + more, 1);
+  while (status == DEA_OK && fraction < 1) {
+    double next = fmin(fraction + more, 1);
     path->system.ramp(path->system.self, next);
     dea_status tried = find_rest(path);
     if (tried == DEA_OK) {
-      share = next;
+      fraction = next;
       more *= 2;
     } else {
       more /= 2;
@@ -529,7 +529,7 @@ dea_status dea_path_solve(struct dea_context *ctx, struct dea_path *path, const 
   if (path->passed) {
     DEA_TRY(ctx, dea_model_report_passed(ctx, model, from_V, voltage_V, &path->limit));
   }
-  out->told |= (unsigned)path->beyond << DEA_FLAG_STATES;
+  out->own_flags |= (unsigned)path->beyond << DEA_FLAG_STATES;
   return DEA_OK;
 }
 

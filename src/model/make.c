@@ -24,7 +24,7 @@ dea_status dea_model_report_passed(struct dea_context *ctx, const char *name, do
                                    double to_V, const struct dea_event *passed)
 {
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
-                         "model %s: from %.6g to %.6g kV it leaps past a limit point, %s at %.6g "
+                         "model %s: from %.6g to %.6g kV it snaps past a limit point, %s at %.6g "
                          "kV, to another state",
                          name, 1e-3 * from_V, 1e-3 * to_V,
                          passed->kind == DEA_EVENT_PULL_IN ? "pull-in or snapping through"

@@ -1,4 +1,4 @@
-/* What all models have in common: how they are created, and what they say of a leap. */
+/* What all models have in common: how they are created, and what they say of a snap-through. */
 #pragma once
 
 #include "model/model.h"

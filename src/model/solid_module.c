@@ -169,11 +169,11 @@ static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_
                                                            stiffness_N_per_m4)));
 }
 
-static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
-                       struct dea_load_point *out, bool *found)
+static dea_status push(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_push *perturbation, struct dea_load_point *out, bool *found)
 {
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(dea_model_push(ctx, model->type, model->inner, way, out, found)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_push(ctx, model->type, model->inner,
+                                                         perturbation, out, found)));
 }
 
 static dea_status transfer(struct dea_context *ctx, struct dea_model *model,

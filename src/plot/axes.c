@@ -22,13 +22,14 @@ struct range {
   double low, high;
 };
 
-/* Of series of an axis that are aside, or that are not. */
-static struct range range_of(const struct dea_panel *panel, bool right, bool aside)
+/* Of series of an axis that are secondary, or that are not. */
+static struct range range_of(const struct dea_panel *panel, bool right, bool secondary)
 {
   struct range range = {INFINITY, -INFINITY};
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
-    for (size_t i = 0; i < series->count && series->right == right && series->aside == aside; i++) {
+    for (size_t i = 0;
+         i < series->count && series->right == right && series->secondary == secondary; i++) {
       double x = series->values[i], y = series->values[series->count + i];
       if (isfinite(y) && !(x < panel->x_min) && !(x > panel->x_max)) {
         range.low = fmin(range.low, y);
@@ -42,29 +43,29 @@ static struct range range_of(const struct dea_panel *panel, bool right, bool asi
 bool dea_panel_range(const struct dea_panel *panel, bool right, double *low, double *high)
 {
   static const double beyond = 0.5;
-  struct range own = range_of(panel, right, false), aside = range_of(panel, right, true);
+  struct range own = range_of(panel, right, false), secondary = range_of(panel, right, true);
   double more = own.high > own.low ? beyond * (own.high - own.low) : INFINITY;
-  *low = fmin(own.low, fmax(aside.low, own.low - more));
-  *high = fmax(own.high, fmin(aside.high, own.high + more));
+  *low = fmin(own.low, fmax(secondary.low, own.low - more));
+  *high = fmax(own.high, fmin(secondary.high, own.high + more));
   if (!(own.low <= own.high)) {
-    *low = aside.low;
-    *high = aside.high;
+    *low = secondary.low;
+    *high = secondary.high;
   }
   return *low <= *high;
 }
 
 void dea_panel_limit(struct dea_panel *panel)
 {
-  struct range aside = range_of(panel, false, true);
+  struct range secondary = range_of(panel, false, true);
   double low, high;
   if (!dea_panel_range(panel, false, &low, &high) || !(high > low)) {
     return;
   }
   double step = nice_above((high - low) / 7);
-  if (aside.low < low && isnan(panel->y_min)) {
+  if (secondary.low < low && isnan(panel->y_min)) {
     panel->y_min = step * floor(low / step);
   }
-  if (aside.high > high && isnan(panel->y_max)) {
+  if (secondary.high > high && isnan(panel->y_max)) {
     panel->y_max = step * ceil(high / step);
   }
 }

@@ -41,10 +41,10 @@ struct dea_series {
   enum dea_series_style style;
   enum dea_colour colour;
   int marker;
-  bool right;   // on the right axis
-  bool aside;   // what is not to be trusted, or only a bound: does not set the axis
-  bool to_top;  // a band up to the top of the panel, wherever its upper edge lies
-  double width; // of the line over that of its style; 0: 1
+  bool right;     // on the right axis
+  bool secondary; // what is not to be trusted, or only a bound: does not set the axis
+  bool to_top;    // a band up to the top of the panel, wherever its upper edge lies
+  double width;   // of the line over that of its style; 0: 1
   size_t count;
   double *values; // [3][count]: x, y, error; owned
 };
@@ -98,8 +98,8 @@ void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel);
 /* Adds a mark; one too many is left out. text is plain text. */
 void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text);
 /* Range of the values of the left or the right axis, where x is within the panel's limits. Values
- * of series that are aside widen it by half of what the others span at most, to either side. False
- * when there are no values. */
+ * of series that are secondary widen it by half of what the others span at most, to either side.
+ * False when there are no values. */
 bool dea_panel_range(const struct dea_panel *panel, bool right, double *low, double *high);
 /* Limits of the left axis, where it has none, that leave out what dea_panel_range leaves out. */
 void dea_panel_limit(struct dea_panel *panel);

@@ -64,7 +64,7 @@ static struct view build_view(const struct dea_panel *panel, double top, double 
     limits_x[0] = x.high >= x.low && x.high > x.low ? x.low : NAN;
     limits_x[1] = isfinite(panel->x_max) ? panel->x_max : x.high > x.low ? x.high : NAN;
   }
-  for (int k = 0; k < 2 && !panel->logarithmic; k++) { // without what is aside
+  for (int k = 0; k < 2 && !panel->logarithmic; k++) { // without what is secondary
     dea_panel_range(panel, k == 1, &y[k].low, &y[k].high);
   }
   const double open[2] = {NAN, NAN}, floor_only[2] = {panel->y_min, NAN};

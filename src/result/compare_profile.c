@@ -84,19 +84,19 @@ dea_status dea_film_line_build(struct dea_arena *memory, const struct dea_result
   if (!find_blend(result, model, voltage_V, &b)) {
     return DEA_OK;
   }
-  const size_t room = b.first->count;
-  double *x = dea_arena_alloc(memory, 2 * room, sizeof *x);
-  double *z = dea_arena_alloc(memory, 2 * room, sizeof *z);
+  const size_t half_count = b.first->count;
+  double *x = dea_arena_alloc(memory, 2 * half_count, sizeof *x);
+  double *z = dea_arena_alloc(memory, 2 * half_count, sizeof *z);
   DEA_TRY(memory->ctx, dea_arena_status(memory));
-  const size_t count = fill_half(&b, half, x + room, z + room);
-  size_t first = room;
+  const size_t count = fill_half(&b, half, x + half_count, z + half_count);
+  size_t first = half_count;
   for (size_t k = 0; k < count; k++) { // the other side, without a centre of its own
-    if (x[room + k] > 0.0) {
-      x[--first] = -x[room + k];
-      z[first] = z[room + k];
+    if (x[half_count + k] > 0.0) {
+      x[--first] = -x[half_count + k];
+      z[first] = z[half_count + k];
     }
   }
-  out->samples = (struct dea_samples){room + count - first, x + first, z + first, NULL};
+  out->samples = (struct dea_samples){half_count + count - first, x + first, z + first, NULL};
   out->directed = b.first->columns[0] < 0.0; // radii rise from there
   out->between_records = b.first != b.second;
   return DEA_OK;

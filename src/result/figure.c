@@ -68,7 +68,7 @@ static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
   struct dea_series *series;
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, look, &series));
   if (!trusted) {
-    series->aside = true;
+    series->secondary = true;
     series->style = DEA_DASHED;
     series->title[0] = '\0';
   }
@@ -95,7 +95,7 @@ static dea_status add_doubtful_markers(struct dea_context *ctx, struct dea_panel
   struct dea_series *series;
   size_t every = curve->count / 10 > 1 ? curve->count / 10 : 1;
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, look, &series));
-  series->aside = true;
+  series->secondary = true;
   series->style = DEA_MARKERS;
   for (size_t i = 0; i < curve->count; i += every) {
     series->values[i] = 1e-3 * curve->points[i].voltage_V;
@@ -117,7 +117,7 @@ static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
   }
   DEA_TRY(ctx, dea_panel_add(ctx, panel, n, DEA_BAND, DEA_GREY, "", &band));
   band->right = right;
-  band->aside = true;
+  band->secondary = true;
   for (size_t i = 0; i < n; i++) {
     const struct dea_load_point *p = &curve->points[i];
     double value = factor * (dea_point_get(p, column) + shift);
@@ -191,7 +191,7 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
       snprintf(shown.title + n, sizeof shown.title - n, " (upper bound)");
     }
     shown.style = DEA_DOTTED;
-    shown.aside = true;
+    shown.secondary = true;
   }
   DEA_TRY(ctx, add_std(ctx, panel, curve, column, factor, shift, &shown));
   DEA_TRY(ctx, add_error(ctx, panel, curve, column, factor, shift, shown.right));
@@ -296,7 +296,7 @@ static dea_status add_events_of(struct dea_context *ctx, struct dea_panel *panel
   }
   struct dea_series *series;
   DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_MARKERS, DEA_BLACK, "", &series));
-  series->aside = true; // they lie on curves
+  series->secondary = true; // they lie on curves
   series->marker = 5 + (int)kind;
   snprintf(series->title, sizeof series->title, "%s", words[kind]);
   for (size_t i = 0; i < result->curve_count; i++) {

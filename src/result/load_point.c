@@ -32,7 +32,7 @@ static bool is_slack(const struct dea_load_point *p)
 
 unsigned dea_load_point_flags(const struct dea_load_point *p)
 {
-  unsigned flags = p->told;
+  unsigned flags = p->own_flags;
   flags |= (unsigned)is_slack(p) << DEA_FLAG_SLACK;
   flags |= (unsigned)(!p->stable || p->unstable_modes > 0) << DEA_FLAG_UNSTABLE;
   flags |= (unsigned)(p->locking_share >= locking_near) << DEA_FLAG_LOCKING;

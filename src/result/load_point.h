@@ -63,7 +63,7 @@
   X(dissipated_J, "J", "uJ", 1e6, "dissipated",                                                    \
     "energy lost in viscous branches, resistance and leakage since the start")                     \
   X(damped_J, "J", "uJ", 1e6, "damped by steps",                                                   \
-    "energy of motion that was not resolved: damped by the steps with inertia, lost in leaps "     \
+    "energy of motion that was not resolved: damped by the steps with inertia, lost in snaps "     \
     "without")                                                                                     \
   X(supply_work_J, "J", "uJ", 1e6, "supply work", "work of the supply since the start")            \
   X(lowest_voltage_V, "V", "kV", 1e-3, "lowest V",                                                 \
@@ -125,7 +125,7 @@ struct dea_load_point {
 #undef DEA_LOAD_POINT_MEMBER
   bool stable;        // under voltage control, within the motions the model knows
   int unstable_modes; // number of negative modes of the tangent
-  unsigned told;      // flags that the numbers do not say, 1u << enum dea_flag: STATES, ...
+  unsigned own_flags; // flags that the numbers do not say, 1u << enum dea_flag: STATES, ...
   /* What monitors and channels show (result/columns.h); of a curve's points its own, NULL: none. */
   struct dea_monitor_values *monitors;
 };

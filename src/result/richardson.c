@@ -9,7 +9,8 @@ static const double order_most = 2, order_least = 0.5; // that an estimate is ma
 static const double without = 3;    // factor on differences where no order was observed
 static const double none = 1e-6;    // of the value: a change that is none
 static const double nothing = 1e-6; // of the largest displacement: one that is none
-static const double aside = 1e-3;   // of the largest motion: one that a free mesh may make of none
+static const double small_motion =
+    1e-3; // of the largest motion: one that a free mesh may make of none
 
 /* Solves (h0^p - h1^p) / (h1^p - h2^p) = ratio for p > 0 by bisection; h0 > h1 > h2. The left side
  * rises with p from its limit at 0, ln(h0/h1) / ln(h1/h2). NAN when ratio is not above that. */
@@ -136,7 +137,7 @@ static double noise(const struct dea_context *ctx, const struct dea_convergence 
       most = fmax(most, largest(c, voltage_V, looked->columns[k], rest_of(other)));
     }
   }
-  return (row->column < DEA_LOAD_POINT_COLUMNS ? nothing : aside) * most;
+  return (row->column < DEA_LOAD_POINT_COLUMNS ? nothing : small_motion) * most;
 }
 
 /* Fills a row; false when no mesh has a value, or none but noise. */

@@ -58,11 +58,11 @@ static void measure(const struct dea_curve *curve, int column, size_t from, size
   }
   out->amplitude = out->highest - out->lowest;
   out->farthest = out->highest - start >= start - out->lowest ? out->highest : out->lowest;
-  double way = out->farthest - start, side = copysign(1, way);
+  double change = out->farthest - start, side = copysign(1, change);
   out->rise_time_s = NAN;
-  if (way != 0) {
-    out->rise_time_s = time_at(curve, column, from, to, start + 0.9 * way, side) -
-                       time_at(curve, column, from, to, start + 0.1 * way, side);
+  if (change != 0) {
+    out->rise_time_s = time_at(curve, column, from, to, start + 0.9 * change, side) -
+                       time_at(curve, column, from, to, start + 0.1 * change, side);
   }
 }
 

@@ -140,7 +140,7 @@ struct job {
   pid_t process;
   int terminal; // that it writes to
   int code;
-  int told; // how often it was told to end
+  int stops_asked; // how often it was told to end
   char said[SAID_MAX];
   char last[LAST_LINE]; // what it says of its progress
   char half[512];       // a line that has not ended
@@ -217,8 +217,9 @@ int dea_studio_jobs_add(struct dea_studio_jobs *jobs, const char *action, const 
  * has started. */
 static void notify(struct job *job)
 {
-  job->told++;
-  kill(job->told > 1 ? -job->process : job->process, job->told > 1 ? SIGKILL : SIGTERM);
+  job->stops_asked++;
+  kill(job->stops_asked > 1 ? -job->process : job->process,
+       job->stops_asked > 1 ? SIGKILL : SIGTERM);
 }
 
 bool dea_studio_jobs_stop(struct dea_studio_jobs *jobs, int id)
@@ -366,7 +367,7 @@ static void inspect(struct job *job)
   receive(job);
   if (over) {
     job->code = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
-    job->state = job->told > 0 ? STOPPED : job->code == 0 ? DONE : FAILED;
+    job->state = job->stops_asked > 0 ? STOPPED : job->code == 0 ? DONE : FAILED;
     close(job->terminal);
     job->terminal = -1;
   }
@@ -418,7 +419,7 @@ void dea_studio_jobs_destroy(struct dea_context *ctx, struct dea_studio_jobs *jo
     while (job->state == RUNNING) {
       inspect(job);
       dea_clock_wait(0.01);
-      if (job->told == 1 && dea_clock_s() - began_s > PATIENCE_S) {
+      if (job->stops_asked == 1 && dea_clock_s() - began_s > PATIENCE_S) {
         notify(job);
       }
     }

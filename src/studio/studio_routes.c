@@ -20,7 +20,7 @@ static const char json_mime[] = "application/json", html_mime[] = "text/html; ch
 /* What a route works with. */
 struct work {
   struct dea_context *ctx;
-  struct dea_studio_folder *room;
+  struct dea_studio_folder *workspace;
   const struct dea_studio_request *request;
   struct dea_studio_reply *reply;
 };
@@ -93,14 +93,14 @@ static bool is_run(const struct work *w, const char *name)
 {
   char results[DEA_STUDIO_STAMP], path[300];
   snprintf(path, sizeof path, "%s/results.h5", name);
-  dea_studio_stamp(w->room->folder, path, results);
+  dea_studio_stamp(w->workspace->folder, path, results);
   return dea_studio_name_good(name, false) && results[0] != '\0';
 }
 
 /* Its path; owned by the caller. */
 static char *path_of(const struct work *w, const char *name)
 {
-  return dea_path_join(w->ctx, w->room->path, name);
+  return dea_path_join(w->ctx, w->workspace->path, name);
 }
 
 /* Adds the name of a file to a command, which must not take it for an option. */
@@ -129,19 +129,19 @@ static void get_script(struct work *w)
           dea_asset_studio_script_length);
 }
 
-json_t *dea_studio_state(struct dea_studio_folder *room)
+json_t *dea_studio_state(struct dea_studio_folder *workspace)
 {
-  json_t *state = dea_studio_list(room->folder);
-  json_object_set_new(state, "folder", json_string(room->path));
-  json_object_set_new(state, "open",
-                      json_string(room->options->open != NULL ? room->options->open : ""));
-  json_object_set_new(state, "jobs", dea_studio_jobs_json(room->jobs));
+  json_t *state = dea_studio_list(workspace->folder);
+  json_object_set_new(state, "folder", json_string(workspace->path));
+  json_object_set_new(
+      state, "open", json_string(workspace->options->open != NULL ? workspace->options->open : ""));
+  json_object_set_new(state, "jobs", dea_studio_jobs_json(workspace->jobs));
   return state;
 }
 
 static void get_state(struct work *w)
 {
-  respond_json(w, 200, dea_studio_state(w->room));
+  respond_json(w, 200, dea_studio_state(w->workspace));
 }
 
 // Designs and tables ------------------------------------------------------------------------------
@@ -152,7 +152,7 @@ static json_t *file_json(struct work *w, const char *name)
   struct dea_bytes bytes = {.ctx = w->ctx};
   char version[65];
   json_t *json = NULL;
-  if (dea_studio_read(w->ctx, w->room->folder, name, DEA_STUDIO_BODY_MAX, &bytes) == DEA_OK) {
+  if (dea_studio_read(w->ctx, w->workspace->folder, name, DEA_STUDIO_BODY_MAX, &bytes) == DEA_OK) {
     dea_sha256_hex(bytes.data, bytes.length, version);
     json = json_pack("{s:s}", "version", version);
     json_object_set_new(json, "text", json_stringn(bytes.data, bytes.length));
@@ -180,7 +180,8 @@ static void get_design(struct work *w)
 static bool can_write(const struct work *w, const char *name)
 {
   struct stat file;
-  return fstatat(w->room->folder, name, &file, AT_SYMLINK_NOFOLLOW) != 0 || S_ISREG(file.st_mode);
+  return fstatat(w->workspace->folder, name, &file, AT_SYMLINK_NOFOLLOW) != 0 ||
+         S_ISREG(file.st_mode);
 }
 
 /* Writes the body where the file is still the version that the page knows ("": none is there); else
@@ -195,7 +196,7 @@ static void store_file(struct work *w)
     respond_error(w, 403, "a folder or a link has that name");
     return;
   }
-  pthread_mutex_lock(&w->room->write_lock);
+  pthread_mutex_lock(&w->workspace->write_lock);
   json_t *there = file_json(w, name);
   const char *version = there != NULL ? json_string_value(json_object_get(there, "version")) : "";
   if (strcmp(version, known != NULL ? known : "") != 0) {
@@ -216,7 +217,7 @@ static void store_file(struct work *w)
     dea_free(w->ctx, path);
   }
   json_decref(there);
-  pthread_mutex_unlock(&w->room->write_lock);
+  pthread_mutex_unlock(&w->workspace->write_lock);
 }
 
 static void get_file(struct work *w)
@@ -235,7 +236,7 @@ static void get_file(struct work *w)
   enum { FILE_MAX = 256 << 20 };
   w->reply->foreign = true;
   if (name == NULL || !dea_studio_name_good(name, true) ||
-      dea_studio_read(w->ctx, w->room->folder, name, FILE_MAX, &w->reply->body) != DEA_OK) {
+      dea_studio_read(w->ctx, w->workspace->folder, name, FILE_MAX, &w->reply->body) != DEA_OK) {
     respond_error(w, 404, "there is no such file in this folder");
     return;
   }
@@ -250,7 +251,7 @@ static void get_file(struct work *w)
 static void get_list(struct work *w)
 {
   const char *name = file_argument(w, "name");
-  json_t *list = name != NULL ? dea_studio_list_in(w->room->folder, name) : NULL;
+  json_t *list = name != NULL ? dea_studio_list_in(w->workspace->folder, name) : NULL;
   if (name != NULL && list == NULL) {
     respond_error(w, 404, "there is no such folder");
   } else if (name != NULL) {
@@ -269,8 +270,9 @@ static json_t *find_command(struct work *w, const struct dea_studio_line *line, 
   struct dea_bytes out = {.ctx = w->ctx}, err = {.ctx = w->ctx};
   struct dea_text shown = {.ctx = w->ctx};
   int code = -1;
-  const dea_status status = dea_studio_run_command(
-      w->ctx, w->room->options->program, w->room->folder, line, QUESTION_S, &out, &err, &code);
+  const dea_status status =
+      dea_studio_run_command(w->ctx, w->workspace->options->program, w->workspace->folder, line,
+                             QUESTION_S, &out, &err, &code);
   json_t *json = json_object(), *said = NULL;
   dea_studio_line_show(line, &shown);
   if (status == DEA_OK) {
@@ -294,10 +296,10 @@ static json_t *find_command(struct work *w, const struct dea_studio_line *line, 
 static char *scratch_name(struct work *w, const char *ending)
 {
   char name[40];
-  pthread_mutex_lock(&w->room->write_lock);
-  snprintf(name, sizeof name, "%u.%s", ++w->room->scratch_count, ending);
-  pthread_mutex_unlock(&w->room->write_lock);
-  return dea_path_join(w->ctx, w->room->scratch, name);
+  pthread_mutex_lock(&w->workspace->write_lock);
+  snprintf(name, sizeof name, "%u.%s", ++w->workspace->scratch_count, ending);
+  pthread_mutex_unlock(&w->workspace->write_lock);
+  return dea_path_join(w->ctx, w->workspace->scratch, name);
 }
 
 /* "dea check DESIGN --svg FILE", or of another command. */
@@ -437,11 +439,11 @@ static void show_runs(struct work *w, enum dea_studio_view view)
     return;
   }
   struct dea_text out = {.ctx = w->ctx};
-  json_t *lists = view == DEA_STUDIO_SLIDERS ? dea_studio_list(w->room->folder) : NULL;
-  pthread_mutex_lock(&w->room->results_lock);
-  const dea_status status = dea_studio_show(w->ctx, w->room->path, runs, measured,
+  json_t *lists = view == DEA_STUDIO_SLIDERS ? dea_studio_list(w->workspace->folder) : NULL;
+  pthread_mutex_lock(&w->workspace->results_lock);
+  const dea_status status = dea_studio_show(w->ctx, w->workspace->path, runs, measured,
                                             json_object_get(lists, "sweeps"), view, &out);
-  pthread_mutex_unlock(&w->room->results_lock);
+  pthread_mutex_unlock(&w->workspace->results_lock);
   if (status == DEA_OK && !out.failed) {
     respond(w, 200, html_mime, dea_text_get(&out), out.length);
     w->reply->foreign = view != DEA_STUDIO_CURVES;
@@ -472,9 +474,9 @@ static void get_sliders(struct work *w)
 static const struct dea_studio_example *example_argument(struct work *w)
 {
   const char *name = argument(w, "name", 0);
-  for (size_t i = 0; name != NULL && i < w->room->options->example_count; i++) {
-    if (strcmp(w->room->options->examples[i].name, name) == 0) {
-      return &w->room->options->examples[i];
+  for (size_t i = 0; name != NULL && i < w->workspace->options->example_count; i++) {
+    if (strcmp(w->workspace->options->examples[i].name, name) == 0) {
+      return &w->workspace->options->examples[i];
     }
   }
   respond_error(w, 404, "there is no such example");
@@ -498,8 +500,8 @@ static void find_line(const char *text, const char *word, char *out, size_t size
 static void get_examples(struct work *w)
 {
   json_t *list = json_array();
-  for (size_t i = 0; i < w->room->options->example_count; i++) {
-    const struct dea_studio_example *example = &w->room->options->examples[i];
+  for (size_t i = 0; i < w->workspace->options->example_count; i++) {
+    const struct dea_studio_example *example = &w->workspace->options->examples[i];
     char title[200], *bytes = NULL;
     size_t length;
     if (dea_file_read(w->ctx, example->path, DEA_STUDIO_BODY_MAX, &bytes, &length) == DEA_OK) {
@@ -525,15 +527,15 @@ static bool copy_text(struct work *w, const char *text, size_t length, const cha
   struct stat file;
   char *path = path_of(w, to);
   bool done = false;
-  pthread_mutex_lock(&w->room->write_lock);
-  if (fstatat(w->room->folder, to, &file, AT_SYMLINK_NOFOLLOW) == 0) {
+  pthread_mutex_lock(&w->workspace->write_lock);
+  if (fstatat(w->workspace->folder, to, &file, AT_SYMLINK_NOFOLLOW) == 0) {
     respond_error(w, 409, "a file of that name is there");
   } else if (path == NULL || dea_file_write(w->ctx, path, text, length) != DEA_OK) {
     respond_failure(w);
   } else {
     done = true;
   }
-  pthread_mutex_unlock(&w->room->write_lock);
+  pthread_mutex_unlock(&w->workspace->write_lock);
   dea_free(w->ctx, path);
   return done;
 }
@@ -611,7 +613,7 @@ static const char *job_output(struct work *w, const char *file, const char *outp
   struct stat info;
   if (file == NULL || output == NULL || !dea_studio_name_good(file, false) || !can_write(w, file) ||
       !dea_studio_name_good(output, false) ||
-      (fstatat(w->room->folder, output, &info, AT_SYMLINK_NOFOLLOW) == 0 &&
+      (fstatat(w->workspace->folder, output, &info, AT_SYMLINK_NOFOLLOW) == 0 &&
        !S_ISDIR(info.st_mode))) {
     respond_error(w, 400, "a file of this folder and a folder for what comes of it are needed");
     return NULL;
@@ -681,7 +683,7 @@ static void post_job(struct work *w)
   if (!known) {
     respond_error(w, 400, "actions are run, fab, fit, sweep, optimise and report");
   } else if (made) {
-    const int id = dea_studio_jobs_add(w->room->jobs, action, subject, output, &line);
+    const int id = dea_studio_jobs_add(w->workspace->jobs, action, subject, output, &line);
     respond_json(w, 200,
                  id > 0
                      ? json_pack("{s:i}", "id", id)
@@ -695,7 +697,7 @@ static void post_stop(struct work *w)
   json_t *body = json_loadb(w->request->body, w->request->body_length, 0, NULL);
   const int id = (int)json_integer_value(json_object_get(body, "id"));
   json_decref(body);
-  if (dea_studio_jobs_stop(w->room->jobs, id)) {
+  if (dea_studio_jobs_stop(w->workspace->jobs, id)) {
     respond_json(w, 200, json_object());
   } else {
     respond_error(w, 404, "that does not run");
@@ -704,7 +706,7 @@ static void post_stop(struct work *w)
 
 // -------------------------------------------------------------------------------------------------
 
-void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *room,
+void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *workspace,
                        const struct dea_studio_request *request, struct dea_studio_reply *reply)
 {
   static const struct {
@@ -730,7 +732,7 @@ void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *room,
                 {"POST", "copy", post_copy},
                 {"POST", "job", post_job},
                 {"POST", "stop", post_stop}};
-  struct work w = {ctx, room, request, reply};
+  struct work w = {ctx, workspace, request, reply};
   bool path_known = false;
   for (size_t i = 0; i < sizeof routes / sizeof routes[0]; i++) {
     if (strcmp(routes[i].path, request->path) == 0) {

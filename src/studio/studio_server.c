@@ -35,7 +35,7 @@ static const double body_patience_s = 3; // for all of a request's body
 struct dea_studio {
   struct dea_context *ctx;
   struct dea_studio_options options;
-  struct dea_studio_folder room;
+  struct dea_studio_folder workspace;
   struct mg_context *server;
   char *path;               // of the folder
   char scratch[512];        // of files on the way
@@ -146,7 +146,7 @@ static int send_events(struct dea_studio *studio, struct mg_connection *connecti
   }
   send_head(connection, 200, "text/event-stream", -1, own_policy);
   while (there && !atomic_load(&studio->closing)) {
-    json_t *state = dea_studio_state(&studio->room);
+    json_t *state = dea_studio_state(&studio->workspace);
     char *text = json_dumps(state, JSON_COMPACT);
     json_decref(state);
     if (text != NULL && (last == NULL || strcmp(text, last) != 0)) {
@@ -206,7 +206,7 @@ static bool read_body(struct dea_context *ctx, struct mg_connection *connection,
 /* A question and where its answer goes. */
 struct task {
   struct dea_context *ctx;
-  struct dea_studio_folder *room;
+  struct dea_studio_folder *workspace;
   const struct dea_studio_request *request;
   struct dea_studio_reply *reply;
 };
@@ -214,13 +214,13 @@ struct task {
 static void *work(void *user)
 {
   const struct task *task = user;
-  dea_studio_answer(task->ctx, task->room, task->request, task->reply);
+  dea_studio_answer(task->ctx, task->workspace, task->request, task->reply);
   return NULL;
 }
 
 /* Answers on a thread of its own: those of civetweb have stacks of 100 kB, which is not enough to
  * read results. */
-static void work_aside(struct task *task)
+static void answer_in_worker(struct task *task)
 {
   enum { STACK = 8 << 20 };
   pthread_t thread;
@@ -251,7 +251,7 @@ static int answer(struct dea_studio *studio, struct mg_connection *connection,
                                                .arguments = read_arguments(info),
                                                .body = body,
                                                .body_length = length};
-    work_aside(&(struct task){ctx, &studio->room, &request, &reply});
+    answer_in_worker(&(struct task){ctx, &studio->workspace, &request, &reply});
     json_decref(request.arguments);
     send_head(connection, reply.status, reply.type, (long long)reply.body.length,
               reply.foreign ? foreign_policy : own_policy);
@@ -372,19 +372,20 @@ static dea_status begin(struct dea_studio *studio)
 {
   struct dea_context *ctx = studio->ctx;
   studio->path = realpath(studio->options.folder, NULL);
-  studio->room.folder =
+  studio->workspace.folder =
       studio->path != NULL ? open(studio->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
-  if (studio->room.folder < 0) {
+  if (studio->workspace.folder < 0) {
     return dea_fail(ctx, DEA_E_IO, "cannot open the folder %s: %s", studio->options.folder,
                     strerror(errno));
   }
   DEA_TRY(ctx, create_secret(studio));
   DEA_TRY(ctx, create_scratch(studio));
-  studio->room.options = &studio->options;
-  studio->room.path = studio->path;
-  studio->room.scratch = studio->scratch;
-  studio->room.jobs = dea_studio_jobs_create(ctx, studio->options.program, studio->room.folder);
-  if (studio->room.jobs == NULL) {
+  studio->workspace.options = &studio->options;
+  studio->workspace.path = studio->path;
+  studio->workspace.scratch = studio->scratch;
+  studio->workspace.jobs =
+      dea_studio_jobs_create(ctx, studio->options.program, studio->workspace.folder);
+  if (studio->workspace.jobs == NULL) {
     return dea_context_status(ctx);
   }
   DEA_TRY(ctx, listen_at(studio));
@@ -397,9 +398,9 @@ dea_status dea_studio_start(struct dea_context *ctx, const struct dea_studio_opt
   struct dea_studio *studio = dea_alloc(ctx, 1, sizeof *studio);
   *out = NULL;
   DEA_TRY_MEMORY(studio != NULL);
-  *studio = (struct dea_studio){.ctx = ctx, .options = *options, .room = {.folder = -1}};
-  pthread_mutex_init(&studio->room.write_lock, NULL);
-  pthread_mutex_init(&studio->room.results_lock, NULL);
+  *studio = (struct dea_studio){.ctx = ctx, .options = *options, .workspace = {.folder = -1}};
+  pthread_mutex_init(&studio->workspace.write_lock, NULL);
+  pthread_mutex_init(&studio->workspace.results_lock, NULL);
   const dea_status status = begin(studio);
   if (status != DEA_OK) {
     dea_studio_stop(studio);
@@ -422,7 +423,7 @@ const char *dea_studio_doorway(const struct dea_studio *studio)
 void dea_studio_serve(struct dea_studio *studio)
 {
   while (!dea_interrupted(studio->ctx)) {
-    dea_studio_jobs_turn(studio->room.jobs);
+    dea_studio_jobs_turn(studio->workspace.jobs);
   }
 }
 
@@ -437,18 +438,18 @@ void dea_studio_stop(struct dea_studio *studio)
     mg_stop(studio->server);
     mg_exit_library();
   }
-  dea_studio_jobs_destroy(ctx, studio->room.jobs);
+  dea_studio_jobs_destroy(ctx, studio->workspace.jobs);
   if (studio->doorway[0] != '\0') {
     unlink(studio->doorway);
   }
   if (studio->scratch[0] != '\0') {
     rmdir(studio->scratch);
   }
-  if (studio->room.folder >= 0) {
-    close(studio->room.folder);
+  if (studio->workspace.folder >= 0) {
+    close(studio->workspace.folder);
   }
-  pthread_mutex_destroy(&studio->room.write_lock);
-  pthread_mutex_destroy(&studio->room.results_lock);
+  pthread_mutex_destroy(&studio->workspace.write_lock);
+  pthread_mutex_destroy(&studio->workspace.results_lock);
   free(studio->path);
   dea_free(ctx, studio);
 }

@@ -317,7 +317,7 @@ static dea_status lowest_square(struct search *s, double voltage_V, double *squa
   if (*there) { // again, for what the first one leaves is seen where the frequency is nearly 0
     DEA_TRY(s->ctx, solve(s, voltage_V, &s->out->point, &limit, there));
   }
-  *there = *there && (s->out->point.told & 1u << DEA_FLAG_STATES) == 0;
+  *there = *there && (s->out->point.own_flags & 1u << DEA_FLAG_STATES) == 0;
   if (limit != NULL && limit->kind == DEA_EVENT_PULL_IN) { // where the frequency is 0 too
     snprintf(s->out->why, sizeof s->out->why, "pull-in at %.6g kV comes first",
              1e-3 * limit->point.voltage_V);
@@ -465,7 +465,7 @@ static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_crit
                                   const struct dea_design_change *changes, size_t count,
                                   struct dea_design_change *own, double *out)
 {
-  static const double share = 1e-5; // of the voltage, to either side
+  static const double fraction = 1e-5; // of the voltage, to either side
   const int column =
       dea_point_column_find(c->ask.kind == DEA_EVENT_SLACK      ? "min_tension_N_per_m"
                             : c->ask.kind == DEA_EVENT_BUCKLING ? "frequency_Hz"
@@ -474,8 +474,8 @@ static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_crit
       .changes = own, .change_count = count + 1, .columns = &column, .column_count = 1};
   store_at(V, changes, count, own);
   own[count] = (struct dea_design_change){.device = {c->ask.device, c->ask.device},
-                                          .voltage_V = {V * (1 - share), V * (1 + share)},
-                                          .width = 2 * share * V};
+                                          .voltage_V = {V * (1 - fraction), V * (1 + fraction)},
+                                          .width = 2 * fraction * V};
   DEA_TRY(ctx, dea_model_gradient(ctx, c->ask.type, c->model, c->ask.settings, &ask, out));
   for (size_t i = 0; i < count; i++) {
     out[i] /= -out[count];
@@ -491,10 +491,10 @@ static dea_status slopes_below(struct dea_context *ctx, const struct dea_critica
                                const struct dea_design_change *changes, size_t count,
                                struct dea_design_change *own, double *out, double *capacity)
 {
-  static const double share = 1e-4; // of the voltage; more than changes make of it
+  static const double fraction = 1e-4; // of the voltage; more than changes make of it
   double *const at[2] = {capacity, out};
   for (int k = 0; k < 2; k++) {
-    const double V = c->voltage_V * (1 - (2 - k) * share);
+    const double V = c->voltage_V * (1 - (2 - k) * fraction);
     struct dea_load_point point;
     DEA_TRY(ctx, c->ask.type->solve(ctx, c->model, V, &point));
     DEA_TRY(ctx, slopes_of_value(ctx, c, V, changes, count, own, at[k]));

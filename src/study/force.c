@@ -468,7 +468,7 @@ static dea_status add_computed(struct dea_context *ctx, struct dea_panel *panel,
 {
   struct dea_series *series, marks = *look;
   marks.style = DEA_MARKERS;
-  marks.aside = true;
+  marks.secondary = true;
   marks.title[0] = '\0';
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, &marks, &series));
   for (size_t i = 0; i < curve->count; i++) {

@@ -115,7 +115,7 @@ static dea_status add_table(struct dea_context *ctx, const char *model, const st
 static bool leaves_a_state(const struct dea_curve *curve)
 {
   for (size_t i = 0; i < curve->count; i++) {
-    if ((curve->points[i].told & 1u << DEA_FLAG_STATES) != 0) {
+    if ((curve->points[i].own_flags & 1u << DEA_FLAG_STATES) != 0) {
       return dea_curve_first_event(curve, DEA_EVENT_PULL_IN) == NULL;
     }
   }

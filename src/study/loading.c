@@ -352,8 +352,8 @@ static void check_body(const struct loading *l, const struct dea_observation *se
   }
 }
 
-/* A maximum of the force on the way out and the minimum beyond it, by parabolas, and a leap of a
- * body that is pushed. */
+/* A maximum of the force on the way out and the minimum beyond it, by parabolas, and a snap-through
+ * of a body that is pushed. */
 static dea_status watch(struct dea_context *ctx, struct loading *l, bool back, double x, double f)
 {
   memmove(l->x + 1, l->x, 2 * sizeof *l->x);
@@ -375,7 +375,7 @@ static dea_status watch(struct dea_context *ctx, struct loading *l, bool back, d
   }
   if (l->range == FORCE && fabs(step[1]) > 5 * fabs(step[0]) && step[0] != 0) {
     return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                           "loading: at %.4g kV the body leaps from %.4g to %.4g mm between %.4g "
+                           "loading: at %.4g kV the body snaps from %.4g to %.4g mm between %.4g "
                            "and %.4g mN: it snaps through, or the steps are too long",
                            1e-3 * l->voltage_V, 1e3 * l->x[1], 1e3 * l->x[0], 1e3 * l->f[1],
                            1e3 * l->f[0]);

@@ -57,7 +57,8 @@ static dea_status choose_end(struct dea_context *ctx, const struct dea_model_typ
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
-  const size_t errors = dea_finding_trial_begin(ctx); // of a leap on the way the sweep tells
+  const size_t errors =
+      dea_finding_trial_begin(ctx); // of a snap-through on the way the sweep tells
   dea_status status = type->solve(ctx, model, dea_design_highest_V(design), &point);
   dea_finding_trial_end(ctx, errors);
   type->destroy(ctx, model);

@@ -218,7 +218,7 @@ static void interpolate(const struct dea_sampled_line *line, size_t a, size_t b,
   p->voltage_V = line->voltages_V[k];
   p->stable = left->stable;
   p->unstable_modes = left->unstable_modes;
-  p->told = left->told | 1u << DEA_FLAG_INTERPOLATED;
+  p->own_flags = left->own_flags | 1u << DEA_FLAG_INTERPOLATED;
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     if (treatment[c] == LARGER) {
       dea_point_set(p, c, fmax(dea_point_get(left, c), dea_point_get(right, c)));

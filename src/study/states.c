@@ -301,26 +301,27 @@ static dea_status sweep_up(struct search *s, size_t voltage_count)
 }
 
 /* From a state to the level above or below. */
-static dea_status lead(struct search *s, size_t from, int way)
+static dea_status lead(struct search *s, size_t from, int direction)
 {
-  size_t level = s->states[from].level + (way == UP ? 1 : (size_t)-1);
+  size_t level = s->states[from].level + (direction == UP ? 1 : (size_t)-1);
   struct dea_load_point point;
   char note[NOTE_SIZE];
   int to = NONE;
-  s->states[from].led[way] = true;
+  s->states[from].led[direction] = true;
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
   dea_status status = s->type->solve(s->ctx, s->model, s->voltages_V[level], &point);
-  snprintf(note, sizeof note, "%s from %.4g kV", way == UP ? "up" : "down",
+  snprintf(note, sizeof note, "%s from %.4g kV", direction == UP ? "up" : "down",
            1e-3 * s->states[from].point.voltage_V);
   if (status == DEA_OK && point.stable) {
     DEA_TRY(s->ctx, add_state(s, level, &point, note, &to));
   }
-  s->states[from].leads[way] = to;
+  s->states[from].leads[direction] = to;
   return forgive(s->ctx, status);
 }
 
 /* From a state by one push. */
-static dea_status push(struct search *s, size_t from, const struct dea_push *way, const char *note)
+static dea_status push(struct search *s, size_t from, const struct dea_push *direction,
+                       const char *note)
 {
   struct dea_load_point point;
   bool found;
@@ -329,7 +330,7 @@ static dea_status push(struct search *s, size_t from, const struct dea_push *way
     return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted in the search for states");
   }
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
-  dea_status status = dea_model_push(s->ctx, s->type, s->model, way, &point, &found);
+  dea_status status = dea_model_push(s->ctx, s->type, s->model, direction, &point, &found);
   if (status == DEA_OK && found) {
     DEA_TRY(s->ctx, add_state(s, s->states[from].level, &point, note, &to));
   }
@@ -342,11 +343,11 @@ static dea_status push_mode(struct search *s, size_t from, size_t mode, int part
   for (int side = 1; side >= -1; side -= 2) {
     for (size_t a = 0; a < s->settings->push_count; a++) {
       char note[NOTE_SIZE], where[24] = "";
-      const struct dea_push way = {.side = side,
-                                   .mode = mode,
-                                   .amplitude_m = s->settings->pushes_m[a].si,
-                                   .parts = part < 0 ? 0 : s->parts,
-                                   .in = part < 0 ? 0 : 1u << part};
+      const struct dea_push direction = {.side = side,
+                                         .mode = mode,
+                                         .amplitude_m = s->settings->pushes_m[a].si,
+                                         .parts = part < 0 ? 0 : s->parts,
+                                         .in = part < 0 ? 0 : 1u << part};
       if (states_at(s, s->states[from].level) >= (size_t)s->settings->most.si) {
         return DEA_OK;
       }
@@ -354,8 +355,8 @@ static dea_status push_mode(struct search *s, size_t from, size_t mode, int part
         snprintf(where, sizeof where, " at fibre %d", part + 1);
       }
       snprintf(note, sizeof note, "mode %zu%c %.0f um%s", mode + 1, side > 0 ? '+' : '-',
-               1e6 * way.amplitude_m, where);
-      DEA_TRY(s->ctx, push(s, from, &way, note));
+               1e6 * direction.amplitude_m, where);
+      DEA_TRY(s->ctx, push(s, from, &direction, note));
     }
   }
   return DEA_OK;
@@ -492,10 +493,10 @@ static dea_status transfer_one(struct search *s, struct dea_model *from,
 /* A state that was lost, along its branch from the level above or below, on this mesh. */
 static dea_status follow_one(struct search *s, struct finer *mesh, size_t i)
 {
-  for (int way = UP; way <= DOWN && mesh->transferred[i].is == NONE; way++) {
-    int near = s->states[i].leads[way];
+  for (int direction = UP; direction <= DOWN && mesh->transferred[i].is == NONE; direction++) {
+    int near = s->states[i].leads[direction];
     struct dea_load_point point;
-    if (near == NONE || s->states[near].leads[way == UP ? DOWN : UP] != (int)i ||
+    if (near == NONE || s->states[near].leads[direction == UP ? DOWN : UP] != (int)i ||
         mesh->transferred[near].is != near) {
       continue;
     }
@@ -742,13 +743,13 @@ static const struct dea_result_table_type mesh_table = DEA_RESULT_TABLE(
     study_name, "meshes", mesh_columns, .title = "states on finer meshes", .where = ALL);
 
 /* Name of the state that one leads to; "" at the end of the voltages. */
-static void name_lead(const struct search *s, const struct state *state, int way,
+static void name_lead(const struct search *s, const struct state *state, int direction,
                       char out[NAME_SIZE])
 {
-  if (state->leads[way] == NONE) {
-    snprintf(out, NAME_SIZE, "%s", state->led[way] ? "-" : "");
+  if (state->leads[direction] == NONE) {
+    snprintf(out, NAME_SIZE, "%s", state->led[direction] ? "-" : "");
   } else {
-    name_branch(s->states[state->leads[way]].variant, out);
+    name_branch(s->states[state->leads[direction]].variant, out);
   }
 }
 
@@ -891,7 +892,7 @@ static dea_status add_result(struct search *s)
   for (size_t level = 0; level < s->level_count; level++) {
     bool several = states_at(s, level) > 1;
     for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
-      s->states[i].point.told |= (unsigned)several << DEA_FLAG_STATES;
+      s->states[i].point.own_flags |= (unsigned)several << DEA_FLAG_STATES;
       DEA_TRY(ctx, append_state(s, i, &branches));
     }
   }

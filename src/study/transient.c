@@ -135,7 +135,7 @@ struct source {
   double constant_V;                   // added to it
 };
 
-struct player {
+struct playback {
   const struct dea_model_type *type;
   struct dea_model *model;
   /* Of the supply, [0], and of the channels of the layout, [source_count]; as what follows in the
@@ -162,12 +162,12 @@ struct player {
   double *seen_largest; // [seen.count]
   double disconnect_s;  // INFINITY: never
   bool inertia;
-  size_t told; // thousandths of the time that progress was told of
+  size_t reported; // thousandths of the time that progress was told of
   char what[DEA_NAME_SIZE + 16];
 };
 
 /* Every second point and the last one, and from now on half as many. */
-static void thin(struct player *p)
+static void thin(struct playback *p)
 {
   struct dea_curve *curve = p->curve;
   size_t count = curve->count;
@@ -179,7 +179,8 @@ static void thin(struct player *p)
   p->interval_s = fmax(2 * p->interval_s, 2 * p->time_s / POINTS_MAX);
 }
 
-static dea_status add(struct dea_context *ctx, struct player *p, const struct dea_load_point *point)
+static dea_status add(struct dea_context *ctx, struct playback *p,
+                      const struct dea_load_point *point)
 {
   p->has_pending = false;
   DEA_TRY(ctx, dea_curve_add_point(ctx, p->curve, point));
@@ -198,7 +199,7 @@ static double off_line(double share, double a, double b, double c, double *large
 
 /* Whether a figure without the pending point would show another line from the last one that is kept
  * to this one. */
-static bool would_be_missed(struct player *p, const struct dea_load_point *point)
+static bool would_be_missed(struct playback *p, const struct dea_load_point *point)
 {
   static const double visible = 0.01;
   const struct dea_load_point *a = &p->curve->points[p->curve->count - 1], *b = &p->pending;
@@ -222,7 +223,7 @@ static bool would_be_missed(struct player *p, const struct dea_load_point *point
 }
 
 /* Where the film has which voltage at the last point of the curve, which the model is at. */
-static dea_status add_fields(struct dea_context *ctx, struct player *p)
+static dea_status add_fields(struct dea_context *ctx, struct playback *p)
 {
   const size_t last = p->curve->count - 1;
   char name[DEA_NAME_SIZE];
@@ -233,7 +234,7 @@ static dea_status add_fields(struct dea_context *ctx, struct player *p)
 }
 
 /* Takes a point to the curve if it is needed there; corner: in any case. */
-static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_load_point *point,
+static dea_status keep(struct dea_context *ctx, struct playback *p, struct dea_load_point *point,
                        bool corner)
 {
   struct dea_curve *curve = p->curve;
@@ -261,13 +262,13 @@ static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_loa
 }
 
 /* The last point stays however it ends. */
-static dea_status flush(struct dea_context *ctx, struct player *p)
+static dea_status flush(struct dea_context *ctx, struct playback *p)
 {
   return p->has_pending ? add(ctx, p, &p->pending) : DEA_OK;
 }
 
 /* Why there is no going on, with the event where it ended. */
-static dea_status stop(struct dea_context *ctx, struct player *p, dea_status status)
+static dea_status stop(struct dea_context *ctx, struct playback *p, dea_status status)
 {
   char reason[512];
   snprintf(reason, sizeof reason, "%s", dea_context_message(ctx));
@@ -296,7 +297,7 @@ static const struct dea_waveform *played(const struct source *source)
 }
 
 /* Voltages at a time into next_V; end: of a step there, before what jumps at it. */
-static void find_voltages(struct player *p, double time_s, bool end)
+static void find_voltages(struct playback *p, double time_s, bool end)
 {
   for (size_t k = 0; k < p->source_count; k++) {
     const struct source *source = &p->sources[k];
@@ -309,12 +310,12 @@ static void find_voltages(struct player *p, double time_s, bool end)
 }
 
 /* Voltages at next_V, which a step has gone to. */
-static void set_voltages(struct player *p)
+static void set_voltages(struct playback *p)
 {
   memcpy(p->now_V, p->next_V, p->source_count * sizeof *p->now_V);
 }
 
-static bool voltages_jump(const struct player *p)
+static bool voltages_jump(const struct playback *p)
 {
   bool any = false;
   for (size_t k = 0; k < p->source_count; k++) {
@@ -324,7 +325,7 @@ static bool voltages_jump(const struct player *p)
 }
 
 /* The next corner of any source. */
-static double find_corner(struct player *p)
+static double find_corner(struct playback *p)
 {
   double first_s = p->time_s < p->disconnect_s ? p->disconnect_s : INFINITY;
   for (size_t k = 0; k < p->source_count; k++) {
@@ -335,7 +336,7 @@ static double find_corner(struct player *p)
   return first_s;
 }
 
-static void set_step(const struct player *p, struct dea_time_step *step)
+static void set_step(const struct playback *p, struct dea_time_step *step)
 {
   step->source_voltage_V = p->next_V[0];
   step->disconnected = p->time_s >= p->disconnect_s;
@@ -352,7 +353,7 @@ static void set_step_to(void *user, double to_s, bool last, struct dea_time_step
 // Steps ------------------------------------------------------------------------------------------
 
 /* Sources jump to next_V here. */
-static dea_status jump(struct dea_context *ctx, struct player *p)
+static dea_status jump(struct dea_context *ctx, struct playback *p)
 {
   struct dea_time_step step = {.length_s = 0};
   struct dea_load_point point;
@@ -368,7 +369,7 @@ static dea_status jump(struct dea_context *ctx, struct player *p)
 }
 
 /* One step that the tolerance allows, at most to `end`. */
-static dea_status one_step(struct dea_context *ctx, struct player *p, double end)
+static dea_status one_step(struct dea_context *ctx, struct playback *p, double end)
 {
   // Circuits may be that fast; where an equilibrium is lost need not be known as closely.
   const double longest = fmin(p->longest_s, p->until_s);
@@ -386,17 +387,17 @@ static dea_status one_step(struct dea_context *ctx, struct player *p, double end
   return keep(ctx, p, &point, last);
 }
 
-static void report_progress(struct dea_context *ctx, struct player *p)
+static void report_progress(struct dea_context *ctx, struct playback *p)
 {
   static const size_t whole = 100;
   size_t done = p->time_s < p->until_s ? (size_t)((double)whole * p->time_s / p->until_s) : whole;
-  if (done > p->told) {
+  if (done > p->reported) {
     dea_progress(ctx, p->what, done, whole);
-    p->told = done;
+    p->reported = done;
   }
 }
 
-static dea_status play(struct dea_context *ctx, struct player *p)
+static dea_status play(struct dea_context *ctx, struct playback *p)
 {
   while (p->time_s < p->until_s) {
     find_voltages(p, p->time_s, false);
@@ -420,7 +421,7 @@ static dea_status play(struct dea_context *ctx, struct player *p)
 
 /* Room for the sources of a device. */
 static dea_status build_sources(struct dea_context *ctx, const struct dea_result *result,
-                                struct player *p)
+                                struct playback *p)
 {
   const struct dea_parts *parts = result->design->parts;
   size_t count = parts != NULL ? result->device->layout->channel_count : 1;
@@ -447,7 +448,7 @@ static dea_status build_sources(struct dea_context *ctx, const struct dea_result
 
 /* Waveforms of the sources, end and steps. */
 static dea_status prepare(struct dea_context *ctx, const struct dea_design *design,
-                          struct player *p)
+                          struct playback *p)
 {
   const struct dea_quantity *slew = &design->drive.slew_limit_V_per_s;
   const struct dea_quantity *longest = &settings_of(design)->longest_step_s;
@@ -482,7 +483,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_design *desi
 }
 
 /* Presses the tip in, where that is asked for. */
-static dea_status indent(struct dea_context *ctx, const struct dea_design *design, struct player *p)
+static dea_status indent(struct dea_context *ctx, const struct dea_design *design,
+                         struct playback *p)
 {
   if (settings_of(design)->indent.value == 0) {
     return DEA_OK;
@@ -497,7 +499,8 @@ static dea_status indent(struct dea_context *ctx, const struct dea_design *desig
 }
 
 /* From the film at rest at 0 V. */
-static dea_status begin(struct dea_context *ctx, const struct dea_design *design, struct player *p)
+static dea_status begin(struct dea_context *ctx, const struct dea_design *design,
+                        struct playback *p)
 {
   const struct dea_quantity *limit = &design->drive.current_limit_A;
   const struct dea_time_options options = {
@@ -515,7 +518,7 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
 }
 
 static dea_status reserve(struct dea_context *ctx, const struct dea_result *result,
-                          struct player *p)
+                          struct playback *p)
 {
   DEA_TRY(ctx, dea_monitor_set_init(ctx, p->type, result->device, &p->seen));
   p->spare = dea_monitor_values_copy(&p->seen.memory, p->seen.values);
@@ -537,10 +540,10 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                       struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: this starts from rest
-  struct player p = {.type = type,
-                     .result = result,
-                     .fields = fields_of(type, result),
-                     .inertia = settings_of(result->design)->inertia.value == 1};
+  struct playback p = {.type = type,
+                       .result = result,
+                       .fields = fields_of(type, result),
+                       .inertia = settings_of(result->design)->inertia.value == 1};
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
   snprintf(p.what, sizeof p.what, "%s transient (%%)", type->name);
   dea_status status = reserve(ctx, result, &p);

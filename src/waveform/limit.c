@@ -7,14 +7,14 @@
 static const struct dea_wave_type limited = {.name = "limited"};
 
 /* Where the supply is, and what it made so far. */
-struct player {
+struct limiter {
   struct dea_waveform *out;
   size_t capacity;
   double time_s, value_V;
   bool follows, was_late;
 };
 
-static dea_status go_to(struct player *p, double time_s, double value_V)
+static dea_status go_to(struct limiter *p, double time_s, double value_V)
 {
   struct dea_waveform *w = p->out;
   if (w->knot_count == p->capacity) {
@@ -31,7 +31,7 @@ static dea_status go_to(struct player *p, double time_s, double value_V)
 
 /* From here to `next`, between which the waveform goes straight from a to b; it may be that the
  * supply only comes to where it catches up. */
-static dea_status follow(struct player *p, double slew, double next, double a, double b)
+static dea_status follow(struct limiter *p, double slew, double next, double a, double b)
 {
   double h = next - p->time_s, s = (b - a) / h;
   p->follows = p->follows && a == p->value_V && fabs(s) <= slew * (1 + 1e-12);
@@ -53,7 +53,7 @@ static dea_status follow(struct player *p, double slew, double next, double a, d
   return go_to(p, time_s, value_V);
 }
 
-static dea_status play(struct player *p, const struct dea_waveform *source, double slew,
+static dea_status play(struct limiter *p, const struct dea_waveform *source, double slew,
                        double until)
 {
   while (p->time_s < until) {
@@ -70,7 +70,7 @@ static dea_status play(struct player *p, const struct dea_waveform *source, doub
 dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform *waveform,
                               double slew_V_per_s, double until_s, struct dea_waveform **out)
 {
-  struct player p = {.capacity = 64, .follows = true};
+  struct limiter p = {.capacity = 64, .follows = true};
   *out = NULL;
   p.out = dea_alloc(ctx, 1, sizeof *p.out);
   DEA_TRY_MEMORY(p.out != NULL);

@@ -121,7 +121,7 @@ static double kink(double V)
   return fabs(V - 36);
 }
 
-/* A kink in the middle of a gap is as much off as is estimated: 3/16 of its leap of slope, 2, by
+/* A kink in the middle of a gap is as much off as is estimated: 3/16 of its jump of slope, 2, by
  * the gap. */
 TEST(test_kink)
 {

@@ -32,12 +32,12 @@ static dea_status work(struct dea_context *context, void *user, struct dea_bytes
   return task->status == DEA_OK ? DEA_OK : dea_fail(context, task->status, "no %g", task->number);
 }
 
-static double taken(const struct dea_worker *aside, dea_status wanted)
+static double taken(const struct dea_worker *secondary, dea_status wanted)
 {
   const char *bytes;
   size_t length;
   double number = NAN;
-  assert_int_equal(dea_worker_collect(ctx, aside, &bytes, &length), wanted);
+  assert_int_equal(dea_worker_collect(ctx, secondary, &bytes, &length), wanted);
   assert_true(length == sizeof number || (length == 0 && wanted == DEA_E_TOOL));
   if (length > 0) {
     memcpy(&number, bytes, sizeof number);

@@ -9,8 +9,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* A film of 40 mm x 24 mm, stretched along x and y, with a bottom electrode aside of the middle and
- * others on top, and a stiff ring on it. */
+/* A film of 40 mm x 24 mm, stretched along x and y, with a bottom electrode secondary of the middle
+ * and others on top, and a stiff ring on it. */
 #define DEVICE(stretch, more)                                                                      \
   "dea: 1\n"                                                                                       \
   "shapes:\n"                                                                                      \

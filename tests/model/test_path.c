@@ -214,7 +214,7 @@ static void seek_with(double sign)
       assert_int_equal(passed->kind, steps[i].far ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
       assert_close(passed->point.voltage_V, sign * steps[i].passed * unit_V, 2e-5, 0);
     }
-    assert_int_equal(p.told >> DEA_FLAG_STATES & 1, steps[i].far);
+    assert_int_equal(p.own_flags >> DEA_FLAG_STATES & 1, steps[i].far);
     assert_close(p.voltage_V, sign * steps[i].field * unit_V, 1e-12, 0);
     assert_true(p.stable);
     assert_int_equal(p.electrode_stretch > 3, steps[i].far);

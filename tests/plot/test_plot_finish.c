@@ -60,12 +60,12 @@ TEST(test_png)
   dea_free(ctx, out);
 }
 
-static void add(struct dea_panel *panel, double from, double to, bool aside)
+static void add(struct dea_panel *panel, double from, double to, bool secondary)
 {
   struct dea_series *series;
   assert_int_equal(dea_panel_add(ctx, panel, 2, DEA_LINE, DEA_BLUE, "", &series), DEA_OK);
   memcpy(series->values, (const double[4]){0, 8, from, to}, 4 * sizeof(double));
-  series->aside = aside;
+  series->secondary = secondary;
 }
 
 /* Slack points reach to -1766 N/m and are not to be trusted: the axis is that of the others. */
@@ -119,7 +119,7 @@ TEST(test_a_doubtful_curve_keeps_its_name)
       points[i] = dea_load_point_empty();
       points[i].voltage_V = 100.0 * (double)i;
       points[i].centre_z_m = 1e-6 * (double)i;
-      points[i].told = i >= (size_t)first ? 1u << DEA_FLAG_PREVIEW : 0;
+      points[i].own_flags = i >= (size_t)first ? 1u << DEA_FLAG_PREVIEW : 0;
     }
     assert_int_equal(dea_plot_create(ctx, "z", "", &plot), DEA_OK);
     struct dea_panel *panel = &plot->panels[0];

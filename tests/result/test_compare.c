@@ -107,7 +107,7 @@ TEST(test_uncertainty_of_the_column_before)
 }
 
 /* A run of a device made of plies, with a hub that rises by scale x 1 um at each kV, does not turn,
- * and stands aside by less than the solver knows; slack from 2 kV on. */
+ * and stands secondary by less than the solver knows; slack from 2 kV on. */
 static void make_device_run(const char *name, double scale)
 {
   static const struct dea_column columns[] = {
@@ -137,7 +137,7 @@ static void make_device_run(const char *name, double scale)
     struct dea_load_point point = dea_load_point_empty();
     point.voltage_V = V;
     point.energy_J = -1e-6 * i;
-    point.told = i > 1 ? 1u << DEA_FLAG_STATES : 0;
+    point.own_flags = i > 1 ? 1u << DEA_FLAG_STATES : 0;
     point.monitors = dea_monitor_values_create(&memory, numbers, 4);
     dea_point_set(&point, numbers[0], (i - 2) * scale * 1e-15);
     dea_point_set(&point, numbers[1], i * scale * 1e-6);

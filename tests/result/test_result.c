@@ -93,7 +93,7 @@ TEST(test_trust_ends_at_the_lowest_doubt)
     points[i].voltage_V = i < 4 ? 1e3 * (i + 1) : 1e3 * (7 - i);           // 1 2 3 4 3 2 1 kV
     points[i].breakdown_margin = 0.55 - 0.15 * 1e-3 * points[i].voltage_V; // -0.05 at 4 kV
   }
-  points[4].told = 1u << DEA_FLAG_STATES; // 3 kV, on the way down
+  points[4].own_flags = 1u << DEA_FLAG_STATES; // 3 kV, on the way down
   const struct dea_curve curve = {.points = points, .count = 7};
   struct dea_trust trust = dea_curve_trust(&curve);
   assert_true(trust.trusted_V == 2e3 && trust.safe_V == 3e3 && trust.good_V == 2e3);

@@ -352,7 +352,7 @@ TEST(test_two_plies_under_pressure)
   assert_int_equal(check(&at), 15);
 }
 
-/* A body aside of the middle, on legs that reach over the film's edge and over each other: its
+/* A body secondary of the middle, on legs that reach over the film's edge and over each other: its
  * place and size, an angle, and where outlines cross. */
 TEST(test_shapes)
 {
@@ -413,7 +413,7 @@ TEST(test_region)
   check(&at);
 }
 
-/* A plate on a film, turned and pulled aside by electrodes that lie askew, on a film whose
+/* A plate on a film, turned and pulled secondary by electrodes that lie askew, on a film whose
  * permittivity goes with its stretch: all its motions, and how long a line becomes, by numbers of
  * every kind. */
 TEST(test_plate_askew)
@@ -480,8 +480,8 @@ TEST(test_plate_askew)
   check(&at);
 }
 
-/* A hub that is held aside and askew, as blocked forces are measured: what it takes to hold it, and
- * mean stretches of a region, by numbers of the film and by where it is moved to. */
+/* A hub that is held secondary and askew, as blocked forces are measured: what it takes to hold it,
+ * and mean stretches of a region, by numbers of the film and by where it is moved to. */
 TEST(test_held_hub)
 {
   static const char device[] =

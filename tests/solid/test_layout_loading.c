@@ -168,7 +168,7 @@ TEST(test_pushed)
 }
 
 /* A spring of a table that pushes the hub on from 2 mm to 4 mm: at its points the force is that of
- * the cone and the table; a body that is pushed leaps past the fall of the force. */
+ * the cone and the table; a body that is pushed snaps past the fall of the force. */
 TEST(test_bistable)
 {
   static const double at[] = {0, 1e-3, 2e-3, 4e-3, 6e-3}, pull[] = {0, 0.2, 0.1, -0.3, -0.4};
@@ -203,13 +203,13 @@ TEST(test_bistable)
           "{body: hub, force_from: 200 mN, force_to: 360 mN, steps: 8, back: yes, voltage: [3 kV]}",
           DEA_OK);
   assert_int_equal(r.points->row_count, 17);
-  for (size_t i = 0; i < 17; i++) { // it leaps between 300 and 320 mN, and stays there
+  for (size_t i = 0; i < 17; i++) { // it snaps between 300 and 320 mN, and stays there
     bool before = i <= 5;
     assert_true(point(&r, i, "force_N") < peak || i > 5);
     assert_true(before ? point(&r, i, "shift_m") < peak_at : point(&r, i, "shift_m") > 4e-3);
     assert_close(point(&r, i, "unstable_modes"), 0, 0, 0);
   }
-  assert_non_null(find_finding(ctx, DEA_NOTE, "leaps from"));
+  assert_non_null(find_finding(ctx, DEA_NOTE, "snaps from"));
   assert_true(isnan(dea_result_table_number(r.lines, 0, "least_force_N", 0)));
   dea_result_destroy(ctx, r.result);
   dea_design_destroy(ctx, r.design);
@@ -217,7 +217,7 @@ TEST(test_bistable)
           "{body: hub, force_from: 0 mN, force_to: 360 mN, steps: 18, back: yes, voltage: [3 kV]}",
           DEA_OK);
   assert_int_equal(r.points->row_count, 37);
-  for (size_t i = 18; i < 37; i++) { // and leaps back below the minimum
+  for (size_t i = 18; i < 37; i++) { // and snaps back below the minimum
     double force = point(&r, i, "force_N"), shift = point(&r, i, "shift_m");
     assert_true(fabs(force - least) < 5e-3 || (force > least ? shift > 3e-3 : shift < peak_at));
   }

@@ -485,7 +485,7 @@ TEST(test_disc_of_both_models)
  * the exact disc. */
 TEST(test_pull_in_is_told)
 {
-  only_nightly(); // test_solid_solve_stops has the disc's mesh, test_leaps_are_located a free one
+  only_nightly(); // test_solid_solve_stops has the disc's mesh, test_snaps_are_located a free one
   struct dea_device plain = test_soft_disc();
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
@@ -510,7 +510,7 @@ TEST(test_pull_in_is_told)
   for (double V = 300; V < 350 && found == DEA_OK; V += 5) {
     found = type->solve(ctx, model, V, &point);
     // below it there is nothing to tell; beyond it lies a state that is told to be one of several
-    bool told = ((point.told >> DEA_FLAG_STATES) & 1) != 0;
+    bool told = ((point.own_flags >> DEA_FLAG_STATES) & 1) != 0;
     assert_true(found != DEA_OK || told == (V > pull_in_V));
     if (found == DEA_OK && type->passed(model) != NULL) { // where it has gone past it
       assert_close(type->passed(model)->point.voltage_V, pull_in_V, 1e-3, 0);
@@ -527,9 +527,9 @@ TEST(test_pull_in_is_told)
   dea_device_destroy(ctx, device);
 }
 
-/* The cone with the bistable spring of docs/verification/cone.md: a sweep leaps past both limit
+/* The cone with the bistable spring of docs/verification/cone.md: a sweep snaps past both limit
  * points, and tells where they are. */
-TEST(test_leaps_are_located)
+TEST(test_snaps_are_located)
 {
   static const double at[] = {0, 0.5e-3, 1e-3, 2e-3, 3e-3, 4e-3, 6e-3, 8e-3};
   static const double force[] = {-0.1, -0.097, -0.096, -0.16, -0.33, -0.4, -0.43, -0.43};
@@ -553,8 +553,8 @@ TEST(test_leaps_are_located)
       assert_int_equal(passed->kind, out ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
       assert_close(1e-3 * passed->point.voltage_V, steps[i].passed_kV, out ? 5e-5 : 1e-3, 0);
     }
-    // one of several from where it leapt on, until it is back where it was released
-    bool told = ((point.told >> DEA_FLAG_STATES) & 1) != 0;
+    // one of several from where it snapped on, until it is back where it was released
+    bool told = ((point.own_flags >> DEA_FLAG_STATES) & 1) != 0;
     assert_true(told == (i >= 2 && steps[i].kV > 0));
   }
   type->destroy(ctx, model);

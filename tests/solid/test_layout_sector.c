@@ -265,14 +265,14 @@ TEST(test_loaded_cone)
   assert_close(a.channel[1].capacitance_F, b.channel[1].capacitance_F, 1e-3, 0);
   // a force that the hub is held by, and one that breaks the symmetry
   const struct dea_control up = {.kind = DEA_CONTROL_PLACE, .component = 2},
-                           aside = {.kind = DEA_CONTROL_PLACE};
+                           secondary = {.kind = DEA_CONTROL_PLACE};
   const struct dea_model_type *type = dea_model_find("3d");
   assert_int_equal(type->move(ctx, sector, &up, 2e-3, &part), DEA_OK);
   assert_int_equal(type->move(ctx, whole, &up, 2e-3, &all), DEA_OK);
   assert_int_equal(type->observe(ctx, sector, &a), DEA_OK);
   assert_int_equal(type->observe(ctx, whole, &b), DEA_OK);
   assert_close(a.monitor[0][DEA_OBSERVED_FORCE_Z], b.monitor[0][DEA_OBSERVED_FORCE_Z], 5e-3, 0);
-  assert_int_equal(type->move(ctx, sector, &aside, 1e-4, &part), DEA_E_UNSUPPORTED);
+  assert_int_equal(type->move(ctx, sector, &secondary, 1e-4, &part), DEA_E_UNSUPPORTED);
   type->destroy(ctx, sector);
   type->destroy(ctx, whole);
   dea_device_destroy(ctx, device);

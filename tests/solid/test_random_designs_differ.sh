@@ -1,7 +1,7 @@
 #!/bin/sh
 # ctest: quick
 # verify/random_designs.py sets two models beside each other by their events: pull-in is the same
-# whether a film has ended there or has leapt past it.
+# whether a film has ended there or has snapped past it.
 set -eu
 command -v python3 >/dev/null || exit 77
 cd "$1/verify"
@@ -9,23 +9,23 @@ python3 -B - <<'END'
 from random_designs import differs
 
 
-def film(verdict, pull_in_V, stretches, leapt_V=1e9):
+def film(verdict, pull_in_V, stretches, snapped_V=1e9):
     """Summary of a taut film, swept in steps of 100 V."""
     return {"verdict": verdict, "limits": {"pull_in_voltage_V": pull_in_V} if pull_in_V else {},
             "points": [{"voltage_V": 100.0 * i, "electrode_stretch": stretch,
                         "min_tension_N_per_m": 1.0,
-                        "flags": ["states"] if 100 * i > leapt_V else []}
+                        "flags": ["states"] if 100 * i > snapped_V else []}
                        for i, stretch in enumerate(stretches)]}
 
 
 taut, far = [1, 1.02, 1.05], [3, 3.2]
 ends = film("pull_in", 250.0, taut)
-leaps = film("", 252.0, taut + far, 252)
-assert differs(ends, leaps, 0.05) == ""  # one pull-in; the first ends, the second goes on
-assert differs(leaps, ends, 0.05) == ""
-assert differs(leaps, film("", 252.0, taut + [3.5, 3.9], 252), 0.05) == ""  # of far states no word
-assert "pull-in" in differs(leaps, film("", 220.0, taut + far, 220), 0.05)
-assert "pull-in" in differs(leaps, film("", None, taut + [1.1, 1.2]), 0.05)
+snaps = film("", 252.0, taut + far, 252)
+assert differs(ends, snaps, 0.05) == ""  # one pull-in; the first ends, the second goes on
+assert differs(snaps, ends, 0.05) == ""
+assert differs(snaps, film("", 252.0, taut + [3.5, 3.9], 252), 0.05) == ""  # of far states no word
+assert "pull-in" in differs(snaps, film("", 220.0, taut + far, 220), 0.05)
+assert "pull-in" in differs(snaps, film("", None, taut + [1.1, 1.2]), 0.05)
 assert "pull-in" in differs(ends, film("", None, taut + [1.1, 1.2]), 0.05).replace("_", "-")
 assert differs(film("", 399.0, taut + [1.1]), film("", None, taut + [1.1, 1.2]), 0.05) == ""
 assert differs(ends, film("law_end", None, taut), 0.05) == "pull_in, law_end"

@@ -1,6 +1,6 @@
 /* Gas that moves with discs in a rigid wall, against closed forms. */
 // ctest: solid
-#include "model/solid/adapter/air_mass.h"
+#include "model/solid/model3d/air_mass.h"
 #include "result/copies.h"
 
 #include "fake_surface.h"

@@ -4,7 +4,7 @@
 #include "devices.h"
 #include "grid_moments.h"
 #include "model/solid/actuator/disc_mesh.h"
-#include "model/solid/adapter/plies.h"
+#include "model/solid/model3d/plies.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"

@@ -5,10 +5,10 @@
 #include "devices.h"
 #include "model/model.h"
 #include "model/solid/actuator/disc_mesh.h"
-#include "model/solid/adapter/buckling_branch.h"
-#include "model/solid/adapter/solver_state.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/model3d/buckling_branch.h"
+#include "model/solid/model3d/solver_state.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above

@@ -140,10 +140,10 @@ static struct dea_event trace_pull_in(const struct dea_device *device)
 }
 
 /* A film that thins in one place, by which the whole hardly moves (random design 1252): load steps
- * of model 3d leapt past that to 384 V, and axisymmetric's path turns back at 230.8 V only. Both
+ * of model 3d snapped past that to 384 V, and axisymmetric's path turns back at 230.8 V only. Both
  * find where the flat film's stiffness against a short wave of stretch vanishes, model 3d on ways
  * of any length. */
-TEST(test_local_pull_in_is_not_leapt_over)
+TEST(test_local_pull_in_is_not_snapped_over)
 {
   static const struct dea_model_settings coupled = {
       .film = DEA_FILM_SOLID, .field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1};
@@ -193,7 +193,7 @@ static double check_pull_in(const struct dea_device *device,
 
 /* A membrane that goes slack close to its pull-in (random design 1): the path has a corner there,
  * and a load step that begins before it ends in a state that only the end of the law holds. */
-TEST(test_membrane_does_not_leap_over_pull_in)
+TEST(test_membrane_does_not_snap_over_pull_in)
 {
   struct dea_device device =
       disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 13.74e-6, 1.245, 8.619e-3, 33.66e-3);

@@ -1,8 +1,8 @@
 /* Steps in time of solids: creep, order, energy, vibration. Creep to pull-in: verify_time. */
 // ctest: solid
 #include "material/material.h"
-#include "model/solid/adapter/solid_state.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/model3d/solid_state.h"
 #include "model/solid/motion/time.h"
 #include "solid_block.h"
 

@@ -153,13 +153,13 @@ TEST(test_no_rest_has_a_verdict)
   }
 }
 
-/* Warnings of a leap. */
-static size_t leaps_said(void)
+/* Warnings of a snap-through. */
+static size_t snaps_said(void)
 {
   size_t count, said = 0;
   const struct dea_finding *finding = dea_finding_get(ctx, &count);
   for (size_t i = 0; i < count; i++) {
-    said += strstr(finding[i].text, "leaps past") != NULL;
+    said += strstr(finding[i].text, "snaps past") != NULL;
   }
   return said;
 }
@@ -167,7 +167,7 @@ static size_t leaps_said(void)
 /* A film that snaps past pull-in to where its law stiffens says so once, in the sweep: what else a
  * run solves on the way, to see how far the path is to go or in which steps a map is drawn, is
  * silent. */
-TEST(test_a_leap_is_said_once)
+TEST(test_a_snap_is_said_once)
 {
   static const char *const names[] = {"path", "operating-map", "sweep"};
   static const char *const models[] = {"lumped", "axisymmetric"};
@@ -182,7 +182,7 @@ TEST(test_a_leap_is_said_once)
     assert_int_equal(dea_study_run(ctx, dea_model_find(models[m]), names, 3, result), DEA_OK);
     assert_non_null(
         dea_curve_first_event(dea_result_find(result, models[m], "sweep"), DEA_EVENT_PULL_IN));
-    assert_int_equal(leaps_said(), 1);
+    assert_int_equal(snaps_said(), 1);
     end();
   }
 }

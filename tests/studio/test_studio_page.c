@@ -13,10 +13,10 @@ static int set_up(void **state)
   if (command_set_up(state) != 0) {
     return -1;
   }
-  char room[600];
+  char workspace[600];
   command_folder_make("room");
-  snprintf(room, sizeof room, "%s/room", command_folder);
-  studio_start(&studio, room);
+  snprintf(workspace, sizeof workspace, "%s/room", command_folder);
+  studio_start(&studio, workspace);
   browser_start(&browser, DEA_CHROMIUM, command_folder);
   browser.site = studio.address;
   browser_open(&browser, studio.address);

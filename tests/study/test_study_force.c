@@ -225,7 +225,7 @@ static dea_status film_solve(struct dea_context *context, struct dea_model *mode
   out->min_tension_N_per_m = tension_V - voltage_V;
   out->compression_ratio = 0; // too small a part to wrinkle
   out->force_N = taut_force(voltage_V) - (jumped ? 0.02 : 0) + (fell && film.sticks ? 0.005 : 0);
-  out->told = jumped ? 1u << DEA_FLAG_STATES : 0;
+  out->own_flags = jumped ? 1u << DEA_FLAG_STATES : 0;
   return DEA_OK;
 }
 
@@ -283,7 +283,7 @@ TEST(test_interpolated)
       assert_true(fabs(p->force_N - wanted) <= p->force_interpolation_error_N);
       assert_true(p->force_interpolation_error_N <= 0.0002 * 0.04);
     }
-    assert_true(((p->told >> DEA_FLAG_STATES & 1) != 0) == (V > jump_V));
+    assert_true(((p->own_flags >> DEA_FLAG_STATES & 1) != 0) == (V > jump_V));
   }
   assert_true(computed < 60);
   assert_int_equal(film.solves, computed); // 4.5 kV ends it, 4.6 and 4.8 kV would by the tension
@@ -410,7 +410,7 @@ static void assert_same_point(const struct dea_load_point *one, const struct dea
   assert_memory_equal(one, other, offsetof(struct dea_load_point, stable));
   assert_int_equal(one->stable, other->stable);
   assert_int_equal(one->unstable_modes, other->unstable_modes);
-  assert_int_equal(one->told, other->told);
+  assert_int_equal(one->own_flags, other->own_flags);
 }
 
 /* Lines in processes of their own have the points of lines one after the other, up to the first

@@ -260,9 +260,9 @@ TEST(test_bands)
   const struct dea_curve *other = &r.result->variants[1].curve;
   assert_int_equal(first->count, 2);
   assert_int_equal(other->count, 1);
-  assert_int_equal(first->points[0].told, 0);
-  assert_int_equal(first->points[1].told, 1u << DEA_FLAG_STATES);
-  assert_int_equal(other->points[0].told, 1u << DEA_FLAG_STATES);
+  assert_int_equal(first->points[0].own_flags, 0);
+  assert_int_equal(first->points[1].own_flags, 1u << DEA_FLAG_STATES);
+  assert_int_equal(other->points[0].own_flags, 1u << DEA_FLAG_STATES);
   end(&r);
 }
 

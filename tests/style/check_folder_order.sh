@@ -17,7 +17,7 @@ find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
   BEGIN {
     n = split("base table plot material waveform geometry design device result identify model study figures io compare report job explore fabricate studio api cli", order, " ")
     for (i = 1; i <= n; i++) { rank[order[i]] = i }
-    n = split("point element mesh load recovery actuator assembly equilibrium motion adapter", order, " ")
+    n = split("point element mesh load recovery actuator assembly equilibrium motion model3d", order, " ")
     for (i = 1; i <= n; i++) { room[order[i]] = i } # of model/solid
   }
   function part(path, i, parts) { split(path, parts, "/"); return parts[i] }

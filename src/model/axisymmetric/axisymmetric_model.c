@@ -112,7 +112,7 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   if (status != DEA_OK) {
     return status;
   }
-  out->told = (unsigned)(model->device.fibre_count > 0) << DEA_FLAG_PLAIN;
+  out->own_flags = (unsigned)(model->device.fibre_count > 0) << DEA_FLAG_PLAIN;
   out->voltage_V = voltage_V;
   out->electrode_stretch = 1 + edge_u_m / a;
   out->passive_stretch = 1 - edge_u_m / (b - a); // mean of the radial one

@@ -52,7 +52,7 @@ static dea_status add_lift(const struct dea_model *model, const struct dea_lumpe
                            double field, struct dea_load_point *out)
 {
   double z = dea_lift_height(&model->lift, out->electrode_stretch), where;
-  out->told |= 1u << DEA_FLAG_BOUND | 1u << DEA_FLAG_PLAIN;
+  out->own_flags |= 1u << DEA_FLAG_BOUND | 1u << DEA_FLAG_PLAIN;
   out->fibre_tip_z_m = out->centre_z_m = z;
   if (z > 0) {
     return dea_lift_force_max(lumped, &model->lift, field, z, &out->force_N, &where);

@@ -136,8 +136,8 @@ static dea_status add_region(struct dea_context *ctx, struct work *w, const stru
         double before[2], after[2];
         dea_piece_point(&o->from, 0.25 * c, before);
         dea_piece_point(&o->to, 0.25 * c, after);
-        const double way = hypot(after[0] - before[0], after[1] - before[1]);
-        w->apart_m = fmax(w->apart_m, apart_share * way);
+        const double moved_m = hypot(after[0] - before[0], after[1] - before[1]);
+        w->apart_m = fmax(w->apart_m, apart_share * moved_m);
       }
     }
   }

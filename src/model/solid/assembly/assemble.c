@@ -206,9 +206,9 @@ static void add_increment(struct dea_solid *s, const int *nodes, int dofs, const
 {
   int per = s->problem.per_node;
   for (int j = 0; j < dofs; j++) {
-    double way = s->work.increment[dea_solid_at(s, nodes[j / per], j % per)];
-    for (int i = 0; i < dofs && way != 0; i++) {
-      s->work.g[dea_solid_at(s, nodes[i / per], i % per)] += K[i * dofs + j] * way;
+    double amount = s->work.increment[dea_solid_at(s, nodes[j / per], j % per)];
+    for (int i = 0; i < dofs && amount != 0; i++) {
+      s->work.g[dea_solid_at(s, nodes[i / per], i % per)] += K[i * dofs + j] * amount;
     }
   }
 }

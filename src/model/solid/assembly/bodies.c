@@ -462,8 +462,9 @@ static dea_status check_follower(struct dea_context *ctx, const struct dea_solid
     u[i] = shift + M[3 * i] * r[0] + M[3 * i + 1] * r[1] + M[3 * i + 2] * r[2];
   }
   for (size_t i = 0; i < 3; i++) {
-    double way = Q != NULL ? Q[3 * i] * u[0] + Q[3 * i + 1] * u[1] + Q[3 * i + 2] * u[2] : u[i];
-    if (p->held[3 * node + i] && fabs(way) > 1e-9 * b->length_m) {
+    double direction =
+        Q != NULL ? Q[3 * i] * u[0] + Q[3 * i + 1] * u[1] + Q[3 * i + 2] * u[2] : u[i];
+    if (p->held[3 * node + i] && fabs(direction) > 1e-9 * b->length_m) {
       const double *X = p->grid->X + 3 * node;
       return dea_fail(ctx, DEA_E_ARGUMENT,
                       "the node at (%.4g, %.4g, %.4g) mm is held and follows a body that may move "
@@ -652,21 +653,21 @@ void dea_solid_body_reaction(const struct dea_solid *solid, size_t body, double 
   }
 }
 
-bool dea_solid_body_force_way(const struct dea_solid *solid, size_t body, size_t component,
-                              double *way)
+bool dea_solid_body_force_direction(const struct dea_solid *solid, size_t body, size_t component,
+                                    double *direction)
 {
   const struct dea_solid_body *b = &solid->problem.bodies[body];
   const unsigned char *held = solid->problem.held + 3 * b->node;
   struct rotation q;
   double M[9];
   if (component < 3) {
-    way[3 * b->node + component] = 1;
+    direction[3 * b->node + component] = 1;
     return true;
   }
   rotation_at(solid, body, solid->state.u, &q);
   moment_matrix(&q, M);
   for (size_t i = 0; i < 3; i++) {
-    way[3 * b->node + 3 + i] = b->length_m * M[3 * (component - 3) + i];
+    direction[3 * b->node + 3 + i] = b->length_m * M[3 * (component - 3) + i];
   }
   return held[3] && held[4] && held[5];
 }

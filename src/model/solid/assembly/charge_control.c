@@ -7,8 +7,8 @@
 
 struct dea_charge {
   struct dea_solid *solid;
-  double *room;  // [dofs]
-  double *share; // [channels + 1] of the lift: the supply's, or 1 of one channel
+  double *scratch; // [dofs]
+  double *share;   // [channels + 1] of the lift: the supply's, or 1 of one channel
   size_t channel;
   bool held;
   double now_C, goal_C;
@@ -113,11 +113,11 @@ static double whole(const void *self, const double *u, double *slope)
 {
   const struct dea_charge *c = self;
   if (c->held && slope != NULL) {
-    memset(c->room, 0, c->solid->problem.dofs * sizeof *c->room);
-    add_slope(c, u, c->room);
-    dea_solid_sum(c->room, c->solid->problem.dofs);
+    memset(c->scratch, 0, c->solid->problem.dofs * sizeof *c->scratch);
+    add_slope(c, u, c->scratch);
+    dea_solid_sum(c->scratch, c->solid->problem.dofs);
     for (size_t i = 0; i < c->solid->problem.dofs; i++) {
-      slope[i] += c->room[i];
+      slope[i] += c->scratch[i];
     }
   }
   return c->held ? 1 / c->capacitance_F : 0;
@@ -126,10 +126,10 @@ static double whole(const void *self, const double *u, double *slope)
 static double along(const void *self, const double *u, const double *motion)
 {
   const struct dea_charge *c = self;
-  memset(c->room, 0, c->solid->problem.dofs * sizeof *c->room);
-  add_slope(c, u, c->room);
-  dea_solid_sum(c->room, c->solid->problem.dofs);
-  return dea_solid_dot(c->solid, c->room, motion);
+  memset(c->scratch, 0, c->solid->problem.dofs * sizeof *c->scratch);
+  add_slope(c, u, c->scratch);
+  dea_solid_sum(c->scratch, c->solid->problem.dofs);
+  return dea_solid_dot(c->solid, c->scratch, motion);
 }
 
 static dea_status refuse(struct dea_context *ctx, const struct dea_solid *s)
@@ -150,11 +150,11 @@ dea_status dea_charge_create(struct dea_context *ctx, struct dea_solid *solid)
 {
   DEA_TRY(ctx, refuse(ctx, solid));
   struct dea_charge *c = dea_arena_alloc(&solid->memory, 1, sizeof *c);
-  double *room = dea_arena_alloc(&solid->memory, solid->problem.dofs, sizeof *room);
+  double *scratch = dea_arena_alloc(&solid->memory, solid->problem.dofs, sizeof *scratch);
   double *share = dea_arena_alloc(&solid->memory, solid->problem.channel_count + 1, sizeof *share);
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&solid->memory)));
   c->solid = solid;
-  c->room = room;
+  c->scratch = scratch;
   c->share = share;
   const struct dea_solid_load load = {.self = c,
                                       .piece_count = 1,

@@ -172,13 +172,13 @@ bool dea_solid_controls_increment(struct dea_solid *s, const double *controls)
   memcpy(s->work.increment, s->state.u, p->dofs * sizeof(double));
   dea_solid_frame_vector(s, false, s->work.increment);
   for (size_t i = 0; i < p->dofs; i++) {
-    double way = 0;
+    double moved_by = 0;
     if (i < move_count(s) && p->held[i] && p->held[i] != DEA_FOLLOWS) {
-      way = place[i] - s->work.increment[i];
-      way = fabs(way) > rounding * fmax(fabs(place[i]), moved(s, i)) ? way : 0;
+      moved_by = place[i] - s->work.increment[i];
+      moved_by = fabs(moved_by) > rounding * fmax(fabs(place[i]), moved(s, i)) ? moved_by : 0;
     }
-    s->work.increment[i] = way;
-    any = any || way != 0;
+    s->work.increment[i] = moved_by;
+    any = any || moved_by != 0;
   }
   dea_solid_frame_vector(s, true, s->work.increment);
   dea_solid_bodies_prepare(s);

@@ -182,7 +182,7 @@ static dea_status add_motion(struct dea_solid *s, size_t e, const double *v, con
   const struct dea_element *element = dea_solid_element(s, e);
   struct dea_solid_element_place place;
   struct dea_element_input in;
-  double moving[DEA_HEX_DOFS_MAX], potential[DEA_HEX_NODES_MAX], bent, moved;
+  double moving[DEA_HEX_DOFS_MAX], potential[DEA_HEX_NODES_MAX], element_stiffness, moved;
   const int *nodes;
   dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
   dea_solid_gather(s, e, v, moving);
@@ -193,13 +193,13 @@ static dea_status add_motion(struct dea_solid *s, size_t e, const double *v, con
   const struct dea_element_motion motion = {
       .v = moving, .potential = potential, .pressure = q + e * (size_t)p->elements.pressures};
   place.part_material.kappa_Pa *= DEA_SOLID_STIFF;
-  dea_status status = element->type->motion(element, &in, &motion, &bent, &moved);
+  dea_status status = element->type->motion(element, &in, &motion, &element_stiffness, &moved);
   if (status == DEA_OK && p->body_count > 0) {
     place.part_material.kappa_Pa = 0;
     status = element->type->evaluate(element, &in, DEA_FORCE, s->work.element);
   }
   if (status == DEA_OK) {
-    *stiffness += bent;
+    *stiffness += element_stiffness;
     *mass += moved;
   }
   if (status == DEA_OK && p->body_count > 0) {

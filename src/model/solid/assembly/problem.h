@@ -73,7 +73,7 @@ struct dea_solid_state {
   double *own_V;      // [channel_count + 1] voltage of a channel beside its share, by the same
   double *own_goal_V; // [channel_count + 1] those that the next solve goes to, by the caller
   double *lift_V; // [channel_count + 1] voltage that a given charge takes beside (charge_control.h)
-  /* Of electrodes with a sheet resistance in time (adapter/sheet.h), [elements]; NULL: none. */
+  /* Of electrodes with a sheet resistance in time (model3d/sheet.h), [elements]; NULL: none. */
   double *drop_V;      // what the voltage across an element has beside, by dea_solid_controls_set
   double *drop_goal_V; // those that the next solve goes to, by the caller
   double *evenness;    // mean voltage across an element over its root mean square, which counts

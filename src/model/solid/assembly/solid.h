@@ -141,10 +141,10 @@ void dea_solid_body_place(const struct dea_solid *solid, size_t body, double shi
  * axes. */
 void dea_solid_body_reaction(const struct dea_solid *solid, size_t body, double force_N[3],
                              double moment_N_m[3]);
-/* The motion of a body's unknowns, way [dofs], that this force (component 0 to 2) or moment (3 to
- * 5) is the work of. false: a moment where the body may turn, and so the motion changes. */
-bool dea_solid_body_force_way(const struct dea_solid *solid, size_t body, size_t component,
-                              double *way);
+/* The motion of a body's unknowns, direction [dofs], that this force (component 0 to 2) or moment
+ * (3 to 5) is the work of. false: a moment where the body may turn, and so the motion changes. */
+bool dea_solid_body_force_direction(const struct dea_solid *solid, size_t body, size_t component,
+                                    double *direction);
 
 /* Adds a load for all solves to come; copied. */
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,

@@ -117,12 +117,12 @@ struct dea_element_type {
   /* Energy and, up to the order, g and K; theta and volume always. */
   dea_status (*evaluate)(const struct dea_element *e, const struct dea_element_input *in,
                          enum dea_eval_order order, struct dea_element_result *out);
-  /* Stresses that a linear step leads to: those at u + share step, from the tangent at u, for a
+  /* Stresses that a linear step leads to: those at u + fraction step, from the tangent at u, for a
    * tangent at the end of the step (docs/theory/branches.md). predicted: [pressures] pressures,
    * then [points][6] second Piola-Kirchhoff stresses; stresses: false for the pressures only. NULL
    * for a kind that has no pressures and keeps the tangent that it has. */
   dea_status (*predict)(const struct dea_element *e, const struct dea_element_input *in,
-                        const double *step, double share, bool stresses, double *predicted);
+                        const double *step, double fraction, bool stresses, double *predicted);
   /* The slope of theta by u at u: b [pressures][dofs] and a lower triangle L
    * [pressures][pressures], all 0 of what takes no pressure. Pressures q push with b^T L^T q; theta
    * grows by L^-T b du; the integral of a product of two pressures is q L L^T q'. NULL for a kind
@@ -183,9 +183,9 @@ static inline void dea_element_add_mass(int nodes, double kilograms, const doubl
                                         double *mass)
 {
   for (int a = 0; a < nodes; a++) {
-    double share = kilograms * value[a];
+    double fraction = kilograms * value[a];
     for (int b = 0; b < nodes; b++) {
-      mass[a * nodes + b] += share * value[b];
+      mass[a * nodes + b] += fraction * value[b];
     }
   }
 }

@@ -410,15 +410,15 @@ dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea
   *stiffness = *mass = 0;
   for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
     const double weight = points[q].weight;
-    double pressure = 0, change = 0, bent = 0, here[3];
+    double pressure = 0, change = 0, bending = 0, here[3];
     for (int m = 0; m < s->pressures && projected; m++) {
       pressure += s->pressure[q][m] * in->multiplier[m];
       change += s->pressure[q][m] * motion->pressure[m];
     }
-    status = bend_point(part_material, q, &points[q], pressure, field, H[q], &bent);
-    bent += 2 * change * product(points[q].cof, H[q]);
-    bent -= change != 0 ? change * change / part_material->kappa_Pa : 0;
-    *stiffness += weight * bent;
+    status = bend_point(part_material, q, &points[q], pressure, field, H[q], &bending);
+    bending += 2 * change * product(points[q].cof, H[q]);
+    bending -= change != 0 ? change * change / part_material->kappa_Pa : 0;
+    *stiffness += weight * bending;
     dea_element_at(s->nodes, s->value[q], motion->v, here);
     *mass += part_material->density_kg_per_m3 * weight *
              (here[0] * here[0] + here[1] * here[1] + here[2] * here[2]);
@@ -453,11 +453,11 @@ static void step_gradient(const struct dea_hex_shape *s, double gradient[3][DEA_
   }
 }
 
-/* S + share F^-1 (dP - H S) at a point: dS of dP = H S + F dS. */
+/* S + fraction F^-1 (dP - H S) at a point: dS of dP = H S + F dS. */
 static dea_status predict_point(const struct dea_part_material *part_material, int q,
                                 const struct dea_hex_point *at, double pressure,
                                 double pressure_change, double field, const double H[9],
-                                double share, double out[6])
+                                double fraction, double out[6])
 {
   struct dea_point point;
   double S[9], dP[9], dS[9];
@@ -474,7 +474,7 @@ static dea_status predict_point(const struct dea_part_material *part_material, i
   }
   dea_part_material_second_stress(at->cof, at->J, dP, dS);
   for (int a = 0; a < 9; a++) {
-    S[a] += share * dS[a];
+    S[a] += fraction * dS[a];
   }
   const double ordered[6] = {
       S[0], S[4], S[8], 0.5 * (S[5] + S[7]), 0.5 * (S[2] + S[6]), 0.5 * (S[1] + S[3])};
@@ -483,7 +483,7 @@ static dea_status predict_point(const struct dea_part_material *part_material, i
 }
 
 dea_status dea_hex_predict(const struct dea_element *element, const struct dea_element_input *in,
-                           const double *step, double share, bool stresses, double *predicted)
+                           const double *step, double fraction, bool stresses, double *predicted)
 {
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX], H[DEA_HEX_GAUSS_MAX][9];
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
@@ -510,7 +510,7 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
   }
   double kappa = projected ? part_material->kappa_Pa : 0;
   for (int m = 0; m < s->pressures; m++) {
-    predicted[m] = projected ? multiplier[m] + kappa * (theta[m] + share * change[m]) : 0;
+    predicted[m] = projected ? multiplier[m] + kappa * (theta[m] + fraction * change[m]) : 0;
   }
   for (int q = 0; q < s->gauss && status == DEA_OK && stresses; q++) {
     double pressure = 0, pressure_change = 0;
@@ -519,7 +519,7 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
       pressure_change += s->pressure[q][m] * kappa * change[m];
     }
     status = predict_point(part_material, q, &points[q], pressure, pressure_change, field, H[q],
-                           share, predicted + s->pressures + 6 * q);
+                           fraction, predicted + s->pressures + 6 * q);
   }
   return status;
 }
@@ -759,10 +759,10 @@ static void membrane_force(const struct dea_hex_shape *s, const struct dea_gauss
     int i = node % fit->n, j = node / fit->n;
     for (int q = 0; q < s->gauss; q++) {
       int a = q % fit->n, b = q / fit->n % fit->n, c = q / (fit->n * fit->n);
-      double share = fit->plane[i][a] * fit->plane[j][b] * 0.5 * w[c] * thickness_m;
+      double fraction = fit->plane[i][a] * fit->plane[j][b] * 0.5 * w[c] * thickness_m;
       for (int m = 0; m < 3; m++) {
-        out->force[node][2 * m] += share * P[q][3 * m];
-        out->force[node][2 * m + 1] += share * P[q][3 * m + 1];
+        out->force[node][2 * m] += fraction * P[q][3 * m];
+        out->force[node][2 * m + 1] += fraction * P[q][3 * m + 1];
       }
     }
   }

@@ -53,7 +53,7 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
 dea_status dea_hex_constraint(const struct dea_element *element, const struct dea_element_input *in,
                               double *b, double *L);
 dea_status dea_hex_predict(const struct dea_element *element, const struct dea_element_input *in,
-                           const double *step, double share, bool stresses, double *predicted);
+                           const double *step, double fraction, bool stresses, double *predicted);
 dea_status dea_hex_mass(const struct dea_element *element,
                         const struct dea_part_material *part_material, const double *X,
                         double *mass);

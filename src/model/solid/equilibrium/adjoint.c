@@ -55,7 +55,7 @@ struct dea_adjoint {
   double *lambda;                // [count][dofs]
   double *nu;                    // [count][all]
   /* of each answer, [count] times; right and way of those that are not there yet, one by one */
-  double *right, *way;           // [dofs] of the slopes at first, way: K^-1 b^T towards
+  double *right, *conjugate;     // [dofs] of the slopes at first, way: K^-1 b^T towards
   double *pull;                  // [all] Q_p
   double *left, *towards, *gain; // [all] of b lambda, direction of a step, b way
   double *before;                // size of the last left
@@ -138,7 +138,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
   a->lambda = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
   a->nu = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
   a->right = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  a->way = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
+  a->conjugate = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
   double **const each[] = {&a->pull, &a->left, &a->towards, &a->gain};
   for (size_t i = 0; i < sizeof each / sizeof each[0]; i++) {
     *each[i] = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
@@ -302,12 +302,12 @@ static dea_status begin(struct dea_context *ctx, struct dea_adjoint *a, size_t c
   for (size_t k = 0; k < count; k++) {
     memmove(a->right + k * a->dofs, dea_adjoint_slope(a, a->open[k]), a->dofs * sizeof(double));
   }
-  DEA_TRY(ctx, solve(ctx, a, count, a->way));
+  DEA_TRY(ctx, solve(ctx, a, count, a->conjugate));
   for (size_t k = 0; k < count; k++) {
     const size_t n = a->open[k];
     memset(a->nu + n * a->all, 0, a->all * sizeof(double));
     a->before[n] = a->largest[n][OF_ELEMENTS] = a->largest[n][OF_LOADS] = 0;
-    memcpy(a->lambda + n * a->dofs, a->way + k * a->dofs, a->dofs * sizeof(double));
+    memcpy(a->lambda + n * a->dofs, a->conjugate + k * a->dofs, a->dofs * sizeof(double));
     squeeze(a, a->lambda + n * a->dofs, a->left + n * a->all);
     get_pressures(a, n);
   }
@@ -350,12 +350,12 @@ static size_t aim(struct dea_adjoint *a, size_t count)
 }
 
 /* One step of conjugate gradients of an answer along its direction, of which way is K^-1 b^T. */
-static void step(struct dea_adjoint *a, size_t number, const double *way)
+static void step(struct dea_adjoint *a, size_t number, const double *conjugate)
 {
   double *towards = a->towards + number * a->all, *left = a->left + number * a->all,
          *nu = a->nu + number * a->all, *lambda = a->lambda + number * a->dofs;
   double product = 0;
-  squeeze(a, way, a->gain);
+  squeeze(a, conjugate, a->gain);
   for (size_t i = 0; i < a->all; i++) {
     product += towards[i] * a->gain[i];
   }
@@ -367,7 +367,7 @@ static void step(struct dea_adjoint *a, size_t number, const double *way)
     *largest = fmax(*largest, fabs(nu[i]));
   }
   for (size_t i = 0; i < a->dofs; i++) {
-    lambda[i] -= length * way[i];
+    lambda[i] -= length * conjugate[i];
   }
 }
 
@@ -397,9 +397,9 @@ dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, con
   DEA_TRY(ctx, begin(ctx, a, open));
   for (int i = 0; i < STEPS && open > 0; i++) {
     open = aim(a, open);
-    DEA_TRY(ctx, solve(ctx, a, open, a->way));
+    DEA_TRY(ctx, solve(ctx, a, open, a->conjugate));
     for (size_t k = 0; k < open; k++) {
-      step(a, a->open[k], a->way + k * a->dofs);
+      step(a, a->open[k], a->conjugate + k * a->dofs);
     }
   }
   return open == 0

@@ -54,7 +54,7 @@ struct dea_continuation_plane {
   double load;      // the unit normal's load
   const double *u0; // [dofs]
   double tau0, length;
-  double enough; // a step that is this share of the length is the last one
+  double enough; // a step that is this fraction of the length is the last one
 };
 
 struct dea_solid_continuation {
@@ -132,7 +132,7 @@ static void lay_plane(struct dea_solid_continuation *t, double load,
 }
 
 /* A plane across a direction of any length, at a distance from a point of the path. enough: a step
- * that is this share of the distance is the last one. */
+ * that is this fraction of the distance is the last one. */
 static void set_plane(struct dea_solid_continuation *t, const double *direction, double load,
                       const struct dea_continuation_path_point *from, double distance,
                       double enough)
@@ -217,17 +217,18 @@ static dea_status bordered_step(struct dea_context *ctx, struct dea_solid_contin
   return DEA_OK;
 }
 
-/* The longest share of the step, of 1, 1/2, 1/4 and 1/8, that turns no element inside out; the last
- * where all do. */
+/* The longest fraction of the step, of 1, 1/2, 1/4 and 1/8, that turns no element inside out; the
+ * last where all do. */
 static double share_with_energy(struct dea_solid *s)
 {
-  double share = 1, energy;
-  for (;; share /= 2) {
+  double fraction = 1, energy;
+  for (;; fraction /= 2) {
     for (size_t i = 0; i < s->problem.dofs; i++) {
-      s->work.trial[i] = s->state.u[i] + share * s->work.step[i];
+      s->work.trial[i] = s->state.u[i] + fraction * s->work.step[i];
     }
-    if (dea_solid_energy(s, s->work.trial, s->state.voltage_V, &energy) == DEA_OK || share < 0.2) {
-      return share;
+    if (dea_solid_energy(s, s->work.trial, s->state.voltage_V, &energy) == DEA_OK ||
+        fraction < 0.2) {
+      return fraction;
     }
   }
 }
@@ -258,19 +259,20 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
   DEA_TRY(ctx, bordered_step(ctx, t, &dtau));
   *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->work.g, s->work.step));
-  double share = share_with_energy(s);
+  double fraction = share_with_energy(s);
   bool stresses = *residual < predicting_rate * before;
-  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, share, stresses, true));
+  DEA_TRY(ctx,
+          dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, fraction, stresses, true));
   for (size_t i = 0; i < s->problem.dofs; i++) {
-    s->state.u[i] += share * s->work.step[i];
+    s->state.u[i] += fraction * s->work.step[i];
     most = fmax(most, fabs(s->work.step[i]));
   }
   double size = hypot(size_of(t, s->work.step), dtau);
   *small = (constrained && most < stol * s->problem.length_m) ||
-           (share == 1 && size < t->plane.enough * fabs(t->plane.length));
-  DEA_TRY(ctx, set_load(ctx, t, t->load + share * dtau));
+           (fraction == 1 && size < t->plane.enough * fabs(t->plane.length));
+  DEA_TRY(ctx, set_load(ctx, t, t->load + fraction * dtau));
   dea_context_counters(ctx)->newton_iterations++;
-  dea_context_counters(ctx)->line_searches += share < 1;
+  dea_context_counters(ctx)->line_searches += fraction < 1;
   return DEA_OK;
 }
 
@@ -397,8 +399,8 @@ static double distance_from(struct dea_solid_continuation *t, const double *pred
 {
   double sum = (t->load - tau) * (t->load - tau);
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
-    double way = t->s->state.u[i] - predicted[i];
-    sum += t->metric[i] * way * way;
+    double span = t->s->state.u[i] - predicted[i];
+    sum += t->metric[i] * span * span;
   }
   return sqrt(sum);
 }
@@ -431,8 +433,8 @@ static double bend(const struct dea_solid_continuation *t)
 }
 
 /* How far the parabola through the last two points is beside the tangent at the last one, as a
- * share of the step: x^2 (before - last + h tangent), with h the way between them along the tangent
- * and x = step / h. *load: of tau. */
+ * fraction of the step: x^2 (before - last + h tangent), with h the distance between them along the
+ * tangent and x = step / h. *load: of tau. */
 static double curve(const struct dea_solid_continuation *t, double *h, double *load)
 {
   *h = (t->last.load - t->before.load) * t->tangent_load;
@@ -443,8 +445,8 @@ static double curve(const struct dea_solid_continuation *t, double *h, double *l
   *load = x * x * (t->before.load - t->last.load + *h * t->tangent_load);
   square = *load * *load;
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
-    double aside = x * x * (t->before.state[i] - t->last.state[i] + *h * t->tangent[i]);
-    square += t->metric[i] * aside * aside;
+    double parabola = x * x * (t->before.state[i] - t->last.state[i] + *h * t->tangent[i]);
+    square += t->metric[i] * parabola * parabola;
   }
   return sqrt(square) / t->step;
 }
@@ -550,17 +552,18 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   return DEA_OK;
 }
 
-/* The equilibrium in the plane that is set, from a share of the way between the last two points. */
+/* The equilibrium in the plane that is set, at a fraction of the distance between the last two
+ * points. */
 static dea_status solve_between(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                double share, struct dea_continuation_point *point)
+                                double fraction, struct dea_continuation_point *point)
 {
   struct dea_continuation_path_point *at = &t->critical;
   int iterations;
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
-    at->state[i] = t->before.state[i] + share * (t->last.state[i] - t->before.state[i]);
+    at->state[i] = t->before.state[i] + fraction * (t->last.state[i] - t->before.state[i]);
   }
-  at->load = t->before.load + share * (t->last.load - t->before.load);
-  at->arc = t->before.arc + share * (t->last.arc - t->before.arc);
+  at->load = t->before.load + fraction * (t->last.load - t->before.load);
+  at->arc = t->before.arc + fraction * (t->last.arc - t->before.arc);
   DEA_TRY(ctx, return_to(ctx, t, at));
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
   DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, at));
@@ -571,10 +574,10 @@ static dea_status solve_between(struct dea_context *ctx, struct dea_solid_contin
 dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_continuation *t,
                                      double load, struct dea_continuation_point *point)
 {
-  const double way = load - t->before.load;
+  const double span = load - t->before.load;
   memset(t->start, 0, t->s->problem.dofs * sizeof *t->start);
-  set_plane(t, t->start, 1, &t->before, way, 0);
-  return DEA_CHAIN(ctx, solve_between(ctx, t, way / (t->last.load - t->before.load), point));
+  set_plane(t, t->start, 1, &t->before, span, 0);
+  return DEA_CHAIN(ctx, solve_between(ctx, t, span / (t->last.load - t->before.load), point));
 }
 
 dea_status dea_solid_continuation_across(struct dea_context *ctx, struct dea_solid_continuation *t,
@@ -713,9 +716,9 @@ void dea_solid_continuation_destroy(struct dea_context *ctx, struct dea_solid_co
 /* Between two places: where, what is to be 0 there, and the direction from one to the other. */
 struct bracket {
   const struct dea_continuation_path_point *from;
-  double *way; // [state_count]
-  double *bow; // [state_count] at a share x the guess is way x + bow x (x - 1)
-  double way_load, bow_load, length, at[2], value[2];
+  double *span;  // [state_count]
+  double *bulge; // [state_count] at a fraction x the guess is span x + bulge x (x - 1)
+  double span_load, bulge_load, length, at[2], value[2];
   size_t mode; // of a bifurcation: the place of the critical one among all
 };
 
@@ -724,7 +727,7 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
                                    const struct bracket *b, double *value)
 {
   struct dea_solid *s = t->s;
-  DEA_TRY(ctx, record_point(ctx, t, b->way, b->way_load, false, &t->critical));
+  DEA_TRY(ctx, record_point(ctx, t, b->span, b->span_load, false, &t->critical));
   *value = t->critical.slope;
   if (t->event == DEA_CONTINUATION_LIMIT) {
     return DEA_OK;
@@ -743,58 +746,60 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
 /* The bow of the parabola whose tangent at the far end is the path's. */
 static void bow_by_tangent(const struct dea_solid_continuation *t, struct bracket *b)
 {
-  double along = t->tangent_load * b->way_load;
+  double along = t->tangent_load * b->span_load;
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
-    along += t->metric[i] * t->tangent[i] * b->way[i];
+    along += t->metric[i] * t->tangent[i] * b->span[i];
   }
   const double whole = b->length * b->length / along;
-  memset(b->bow, 0, t->s->work.load_steps.state_count * sizeof *b->bow);
+  memset(b->bulge, 0, t->s->work.load_steps.state_count * sizeof *b->bulge);
   for (size_t i = 0; i < t->s->problem.dofs && along > 0; i++) {
-    b->bow[i] = whole * t->tangent[i] - b->way[i];
+    b->bulge[i] = whole * t->tangent[i] - b->span[i];
   }
-  b->bow_load = along > 0 ? whole * t->tangent_load - b->way_load : 0;
+  b->bulge_load = along > 0 ? whole * t->tangent_load - b->span_load : 0;
 }
 
-/* The bow of that through the point which was found at a share of the way. */
-static void bow_by_point(const struct dea_solid_continuation *t, struct bracket *b, double share)
+/* The bulge of that through the point which was found at a fraction of the span. */
+static void bow_by_point(const struct dea_solid_continuation *t, struct bracket *b, double fraction)
 {
   const struct dea_continuation_path_point *at = &t->critical;
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
-    b->bow[i] = (at->state[i] - b->from->state[i] - share * b->way[i]) / (share * (share - 1));
+    b->bulge[i] =
+        (at->state[i] - b->from->state[i] - fraction * b->span[i]) / (fraction * (fraction - 1));
   }
-  b->bow_load = (at->load - b->from->load - share * b->way_load) / (share * (share - 1));
+  b->bulge_load =
+      (at->load - b->from->load - fraction * b->span_load) / (fraction * (fraction - 1));
 }
 
-/* The equilibrium at a share of the way. */
+/* The equilibrium at a fraction of the span. */
 static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                 const struct bracket *b, double share)
+                                 const struct bracket *b, double fraction)
 {
   int iterations;
-  const double aside = share * (share - 1);
+  const double parabola = fraction * (fraction - 1);
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
-    t->critical.state[i] = b->from->state[i] + share * b->way[i] + aside * b->bow[i];
+    t->critical.state[i] = b->from->state[i] + fraction * b->span[i] + parabola * b->bulge[i];
   }
-  t->critical.load = b->from->load + share * b->way_load + aside * b->bow_load;
+  t->critical.load = b->from->load + fraction * b->span_load + parabola * b->bulge_load;
   DEA_TRY(ctx, return_to(ctx, t, &t->critical));
-  set_plane(t, b->way, b->way_load, b->from, share * b->length, 0);
+  set_plane(t, b->span, b->span_load, b->from, fraction * b->length, 0);
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
-  t->critical.arc = b->from->arc + share * b->length;
+  t->critical.arc = b->from->arc + fraction * b->length;
   return DEA_OK;
 }
 
-/* The same beside the share where there is none at it: where a mode other than the path's loses its
- * stiffness K is singular on the plane too, and what rounding leaves along the mode grows. */
+/* The same beside the fraction where there is none at it: where a mode other than the path's loses
+ * its stiffness K is singular on the plane too, and what rounding leaves along the mode grows. */
 static dea_status solve_near_share(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                   const struct bracket *b, double *share)
+                                   const struct bracket *b, double *fraction)
 {
-  dea_status status = solve_at_share(ctx, t, b, *share);
-  bool first_half = *share - b->at[0] < b->at[1] - *share;
+  dea_status status = solve_at_share(ctx, t, b, *fraction);
+  bool first_half = *fraction - b->at[0] < b->at[1] - *fraction;
   double by = (first_half ? singular_offset : -singular_offset) * (b->at[1] - b->at[0]),
-         from = *share;
+         from = *fraction;
   for (int i = 0; i < MAX_OFFSETS && dea_solid_may_shorten(status); i++, by *= 2) {
     dea_context_clear(ctx);
-    *share = from + by;
-    status = solve_at_share(ctx, t, b, *share);
+    *fraction = from + by;
+    status = solve_at_share(ctx, t, b, *fraction);
   }
   return status;
 }
@@ -804,35 +809,35 @@ static double next_share(const struct bracket *b)
   return b->at[0] + (b->at[1] - b->at[0]) * b->value[0] / (b->value[0] - b->value[1]);
 }
 
-/* Regula falsi, with the older end's value halved while it stays (Illinois), until the next share
- * would be this one. A value between the two ends that is larger than at both is that of a K which
- * is singular to rounding: there it is. */
+/* Regula falsi, with the older end's value halved while it stays (Illinois), until the next
+ * fraction would be this one. A value between the two ends that is larger than at both is that of a
+ * K which is singular to rounding: there it is. */
 static dea_status close_in(struct dea_context *ctx, struct dea_solid_continuation *t,
                            struct bracket *b)
 {
   const struct dea_solid_settings *o = &t->s->settings;
   double seen[2] = {fabs(b->value[0]), fabs(b->value[1])}, first = fmax(seen[0], seen[1]);
-  double value = NAN, share = next_share(b);
+  double value = NAN, fraction = next_share(b);
   double enough = t->event == DEA_CONTINUATION_LIMIT ? o->limit_point_rtol : o->bifurcation_rtol;
   int stays = -1;
   for (int i = 0; i < MAX_ROUNDS; i++) {
-    DEA_TRY(ctx, solve_near_share(ctx, t, b, &share));
+    DEA_TRY(ctx, solve_near_share(ctx, t, b, &fraction));
     DEA_TRY(ctx, measure_critical(ctx, t, b, &value));
     int end = (value < 0) == (b->value[0] < 0) ? 0 : 1;
-    b->at[end] = share;
+    b->at[end] = fraction;
     b->value[end] = value;
     if (stays == 1 - end) {
       b->value[1 - end] /= 2;
     }
     stays = 1 - end;
-    bow_by_point(t, b, share);
+    bow_by_point(t, b, fraction);
     double next = next_share(b);
-    if (fabs(next - share) < enough || fabs(value) < zero_rtol * first ||
+    if (fabs(next - fraction) < enough || fabs(value) < zero_rtol * first ||
         fabs(value) > fmax(seen[0], seen[1])) {
       return DEA_OK;
     }
     seen[end] = fabs(value);
-    share = next;
+    fraction = next;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the critical point could not be closed in on");
 }
@@ -843,10 +848,10 @@ static dea_status locate_between(struct dea_context *ctx, struct dea_solid_conti
   const struct dea_continuation_path_point *ends[2] = {&t->before, &t->last};
   b->from = ends[0];
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
-    b->way[i] = ends[1]->state[i] - ends[0]->state[i];
+    b->span[i] = ends[1]->state[i] - ends[0]->state[i];
   }
-  b->way_load = ends[1]->load - ends[0]->load;
-  b->length = hypot(size_of(t, b->way), b->way_load);
+  b->span_load = ends[1]->load - ends[0]->load;
+  b->length = hypot(size_of(t, b->span), b->span_load);
   bow_by_tangent(t, b);
   b->at[1] = 1;
   b->mode = (size_t)(ends[0]->modes < ends[1]->modes ? ends[0]->modes : ends[1]->modes);
@@ -874,13 +879,13 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
     return dea_fail(ctx, DEA_E_ARGUMENT, "the last step has passed no critical point");
   }
   const size_t states = t->s->work.load_steps.state_count;
-  b.way = dea_solid_alloc(ctx, 2 * states, sizeof *b.way);
-  dea_status status = b.way != NULL ? DEA_OK : DEA_E_MEMORY;
+  b.span = dea_solid_alloc(ctx, 2 * states, sizeof *b.span);
+  dea_status status = b.span != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
-    b.bow = b.way + states;
+    b.bulge = b.span + states;
     status = locate_between(ctx, t, &b);
   }
-  dea_free(ctx, b.way);
+  dea_free(ctx, b.span);
   if (status != DEA_OK) {
     dea_solid_state_set(t->s, t->last.state);
     dea_solid_forget(t->s);

@@ -8,7 +8,7 @@
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/equilibrium/newton.h"
 #include "model/solid/equilibrium/presolve_check.h"
-#include "model/solid/equilibrium/spread.h"
+#include "model/solid/equilibrium/relax_width.h"
 
 #include <math.h>
 #include <string.h>
@@ -234,8 +234,8 @@ static dea_status solve_at_load_factor(struct dea_context *ctx, struct dea_solid
  * known), which goes with the part. */
 static double next_part(double part, double rate, bool there)
 {
-  double share = rate > 0 ? aimed_rate / rate : there ? 2 : 0.5;
-  return part * (there ? fmin(fmax(share, 0.5), 2) : fmin(fmax(share, 0.125), 0.5));
+  double fraction = rate > 0 ? aimed_rate / rate : there ? 2 : 0.5;
+  return part * (there ? fmin(fmax(fraction, 0.5), 2) : fmin(fmax(fraction, 0.125), 0.5));
 }
 
 /* With the factor of each point reached, report->load_factor, in steps as long as their rate of
@@ -247,17 +247,18 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   struct dea_load_steps *path = &s->work.load_steps;
   const double *from = path->controls_from, *goal = path->controls_goal;
   double part = 1, rate = 0, from_here = INFINITY, to_end = INFINITY; // rates over root of part
-  bool fits = true;
+  bool factor_valid = true;
   path->last_V = path->before_last_V; // no bend of another solve: a state that is kept has none
   bool alone = memcmp(from + 1, goal + 1, (path->control_count - 1) * sizeof *from) == 0;
-  while (report->load_factor < 1 && part >= s->settings.anderson_step_min && fits) {
+  while (report->load_factor < 1 && part >= s->settings.anderson_step_min && factor_valid) {
     double load_factor = report->load_factor + part >= 1 - 1e-9 ? 1 : report->load_factor + part;
     part = load_factor - report->load_factor;
     double here_V = alone ? from[0] + report->load_factor * (goal[0] - from[0]) : NAN;
     set_load_factor(s, load_factor);
     DEA_TRY(ctx, dea_solid_follow(ctx, s, here_V, load_factor < 1, report, &rate, there));
-    fits = (s->found.factor_fits || s->found.stiff_factor_fits) &&
-           (*there || rate < sqrt(part) * (load_factor < 1 ? from_here : fmin(from_here, to_end)));
+    factor_valid =
+        (s->found.factor_fits || s->found.stiff_factor_fits) &&
+        (*there || rate < sqrt(part) * (load_factor < 1 ? from_here : fmin(from_here, to_end)));
     from_here = *there ? INFINITY : rate / sqrt(part);
     to_end = load_factor < 1 ? to_end : rate / sqrt(part);
     report->load_factor = *there ? load_factor : report->load_factor;
@@ -265,8 +266,8 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   }
   set_load_factor(s, report->load_factor);
   *there = report->load_factor == 0 || report->load_factor >= 1;
-  fits = s->found.factor_fits || s->found.stiff_factor_fits;
-  if (!*there && fits) { // it is only near one
+  factor_valid = s->found.factor_fits || s->found.stiff_factor_fits;
+  if (!*there && factor_valid) { // it is only near one
     double here_V = alone ? s->state.voltage_V : NAN;
     DEA_TRY(ctx, dea_solid_follow(ctx, s, here_V, false, report, NULL, there));
   }
@@ -354,5 +355,5 @@ dea_status dea_load_steps_solve_to(struct dea_context *ctx, struct dea_solid *s,
   memmove(path->controls_goal, goal, size);
   memcpy(path->controls_from, path->controls, size);
   DEA_TRY(ctx, solve_in_steps(ctx, s, least, report));
-  return dea_solid_spread(ctx, s, report);
+  return dea_solid_relax_width(ctx, s, report);
 }

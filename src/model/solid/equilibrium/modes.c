@@ -229,17 +229,17 @@ static dea_status refine(struct dea_context *ctx, struct eigen *f, size_t count)
   struct dea_solid *s = f->solid;
   const size_t dofs = s->problem.dofs;
   double *v = dea_arena_alloc(&f->memory, count * dofs, sizeof *v);
-  double *bent = dea_arena_alloc(&f->memory, count, sizeof *bent);
+  double *stiffness = dea_arena_alloc(&f->memory, count, sizeof *stiffness);
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&f->memory)));
   for (size_t k = 0; k < count; k++) {
     DEA_TRY(ctx, dea_solid_from_vector(ctx, s, f->vectors[f->order[k]], v + k * dofs));
   }
-  DEA_TRY(ctx, dea_solid_curvatures(ctx, s, count, v, bent));
+  DEA_TRY(ctx, dea_solid_curvatures(ctx, s, count, v, stiffness));
   for (size_t k = 0; k < count; k++) {
     PetscReal moves;
     DEA_PETSC(ctx, MatMult(f->B, f->vectors[f->order[k]], s->work.right));
     DEA_PETSC(ctx, VecDot(f->vectors[f->order[k]], s->work.right, &moves));
-    f->value[f->order[k]] = bent[k] / moves;
+    f->value[f->order[k]] = stiffness[k] / moves;
   }
   sort(f);
   return DEA_OK;

@@ -28,7 +28,7 @@ struct pair {
   int steps;       // of them taken in a row; 0: none
   double shift_Pa; // of the first
   double energy_J; // before it
-  double share, rise;
+  double fraction, rise;
 };
 
 struct newton {
@@ -41,7 +41,7 @@ struct newton {
   int chords;         // in a row
   int unresolved;     // steps in a row whose change of the energy rounding hides
   int lost;           // iterates in a row whose forces are far out of balance
-  int stuck;          // shifted steps in a row that are too small to matter
+  int stalled;        // shifted steps in a row that are too small to matter
   double softness;    // kappa over its own
   struct pair pair;
   struct dea_solid_report *report;
@@ -150,25 +150,25 @@ bool dea_solid_resolved(const struct dea_solid *s, double change)
          s->settings.energy_rtol * s->found.energy_scale_J + s->problem.energy_floor_J;
 }
 
-/* The longest share of the step that the energy lets pass, into work.trial. *rise: of the energy
+/* The longest fraction of the step that the energy lets pass, into work.trial. *rise: of the energy
  * over the slope's size there, -1/2 where the energy is quadratic. false: none. */
 static bool search_line(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
-                        double slope, double *share, double *rise)
+                        double slope, double *fraction, double *rise)
 {
   const struct dea_solid_settings *o = &s->settings;
   double energy = d->report->energy_J, allowed = d->strict ? -o->linesearch_alpha : max_rise, at;
   *rise = -0.5;
-  *share = 1;
-  for (int i = 0; i < o->linesearch_max_iterations; i++, *share /= 2) {
+  *fraction = 1;
+  for (int i = 0; i < o->linesearch_max_iterations; i++, *fraction /= 2) {
     for (size_t k = 0; k < s->problem.dofs; k++) {
-      s->work.trial[k] = s->state.u[k] + *share * s->work.step[k];
+      s->work.trial[k] = s->state.u[k] + *fraction * s->work.step[k];
     }
     if (dea_solid_solve_potential(ctx, s, d->voltage_V, s->work.trial) == DEA_OK &&
         dea_solid_energy(s, s->work.trial, d->voltage_V, &at) == DEA_OK) {
       if (!dea_solid_resolved(s, slope)) {
         return true;
       }
-      *rise = (at - energy) / (*share * fabs(slope));
+      *rise = (at - energy) / (*fraction * fabs(slope));
       if (*rise <= allowed) {
         return true;
       }
@@ -185,13 +185,14 @@ static void set_shift(const struct dea_solid *s, struct newton *d, double shift_
 
 /* The shift of the next step from how this one went. A whole step up by less than its slope leaves
  * the floor of the valley, to which the next one returns: its shift was more than enough. */
-static void adapt_shift(const struct dea_solid *s, struct newton *d, double share, double rise)
+static void adapt_shift(const struct dea_solid *s, struct newton *d, double fraction, double rise)
 {
   double shift_Pa = d->shift_Pa;
   const struct dea_solid_settings *o = &s->settings;
-  if (share < 1 || rise > 0) {
-    shift_Pa = shift_Pa > 0 ? shift_Pa * (share < 0.2 ? shift_growth * shift_growth : shift_growth)
-                            : o->shift_initial * s->problem.modulus_Pa;
+  if (fraction < 1 || rise > 0) {
+    shift_Pa = shift_Pa > 0
+                   ? shift_Pa * (fraction < 0.2 ? shift_growth * shift_growth : shift_growth)
+                   : o->shift_initial * s->problem.modulus_Pa;
   } else if (rise < -0.25) {
     shift_Pa /= fabs(rise + 0.5) < 0.05 ? shift_decay * shift_decay : shift_decay;
   }
@@ -199,10 +200,10 @@ static void adapt_shift(const struct dea_solid *s, struct newton *d, double shar
 }
 
 /* Whether a step from there, with that shift, is one of a pair. */
-static void begin_pair(struct newton *d, double shift_Pa, double share, double rise)
+static void begin_pair(struct newton *d, double shift_Pa, double fraction, double rise)
 {
   if (rise > 0 && shift_Pa > 0 && !d->strict) {
-    d->pair = (struct pair){1, shift_Pa, d->report->energy_J, share, rise};
+    d->pair = (struct pair){1, shift_Pa, d->report->energy_J, fraction, rise};
   } else {
     d->pair.steps = d->pair.steps == 1 ? 2 : 0;
   }
@@ -215,7 +216,7 @@ static void end_pair(const struct dea_solid *s, struct newton *d)
   const struct pair *p = &d->pair;
   d->pair.steps = 0;
   if (d->report->residual <= pair_residual) {
-    const double down = p->share < 1 || p->rise > 5 ? 1 : p->rise < 1 ? 8 : 2;
+    const double down = p->fraction < 1 || p->rise > 5 ? 1 : p->rise < 1 ? 8 : 2;
     set_shift(s, d,
               d->report->energy_J > p->energy_J ? shift_growth * p->shift_Pa : p->shift_Pa / down);
   }
@@ -225,23 +226,23 @@ static void end_pair(const struct dea_solid *s, struct newton *d)
 
 /* One element: predicted stresses into their place, pressures into theta, which is free here. */
 static dea_status predict_element(struct dea_solid *s, size_t k, double voltage_V,
-                                  const double *step, double share, bool stresses)
+                                  const double *step, double fraction, bool stresses)
 {
   const struct dea_solid_problem *p = &s->problem;
   size_t e = p->own[k], pressures = (size_t)p->elements.pressures;
   const struct dea_element *element = dea_solid_element(s, e);
   struct dea_solid_element_place place;
   struct dea_element_input in;
-  double way[DEA_HEX_DOFS_MAX], *out = s->work.predicted + k * p->elements.predicted_count;
+  double element_step[DEA_HEX_DOFS_MAX], *out = s->work.predicted + k * p->elements.predicted_count;
   dea_solid_element_input(s, e, s->state.u, voltage_V, &place, &in);
-  dea_solid_gather(s, e, step, way);
-  dea_status status = element->type->predict(element, &in, way, share, stresses, out);
+  dea_solid_gather(s, e, step, element_step);
+  dea_status status = element->type->predict(element, &in, element_step, fraction, stresses, out);
   memcpy(s->state.theta + e * pressures, out, (size_t)element->pressures * sizeof *out);
   return status;
 }
 
 dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                             const double *step, double share, bool stresses, bool pressures)
+                             const double *step, double fraction, bool stresses, bool pressures)
 {
   const struct dea_solid_problem *p = &s->problem;
   size_t count = dea_solid_pressure_count(s);
@@ -250,7 +251,7 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
   memset(s->state.theta, 0, count * sizeof *s->state.theta);
   for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
     if (dea_solid_element(s, p->own[k])->type->predict != NULL) {
-      status = predict_element(s, k, voltage_V, step, share, stresses);
+      status = predict_element(s, k, voltage_V, step, fraction, stresses);
     }
   }
   s->found.predicted_fits = false;
@@ -289,18 +290,19 @@ static void choose_softness(struct dea_solid *s, struct newton *d, bool soft)
   }
 }
 
-/* Takes the share of the step, with the stresses and the pressures that go with it. */
+/* Takes the fraction of the step, with the stresses and the pressures that go with it. */
 static dea_status apply_step(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
-                             double share, bool stresses)
+                             double fraction, bool stresses)
 {
   bool pressures = d->shift_Pa <= s->problem.modulus_Pa;
   if (!d->strict) {
-    DEA_TRY(ctx, dea_solid_predict(ctx, s, d->voltage_V, s->work.step, share, stresses, pressures));
+    DEA_TRY(ctx,
+            dea_solid_predict(ctx, s, d->voltage_V, s->work.step, fraction, stresses, pressures));
   }
   for (size_t k = 0; k < s->problem.load_count && pressures && !d->strict; k++) {
     const struct dea_solid_load *load = &s->problem.loads[k];
     if (load->predict != NULL) {
-      load->predict(load->self, s->state.u, s->work.step, share);
+      load->predict(load->self, s->state.u, s->work.step, fraction);
     }
   }
   memcpy(s->state.u, s->work.trial, s->problem.dofs * sizeof *s->state.u);
@@ -333,7 +335,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
                               bool *done)
 {
   const struct dea_solid_settings *o = &s->settings;
-  double there = 0, share, rise;
+  double there = 0, fraction, rise;
   bool start = d->start;
   d->start = d->chord = *done = false;
   for (int i = 0; i < MAX_SHIFTS; i++) {
@@ -344,24 +346,24 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     DEA_TRY(ctx, linear_step(ctx, s));
     dea_solid_predict_tangent(s, there == 0 ? s->work.step : NULL);
     double slope = dea_solid_dot(s, s->work.g, s->work.step);
-    bool found = search_line(ctx, s, d, slope, &share, &rise);
-    dea_context_counters(ctx)->line_searches += !found || share < 1;
+    bool found = search_line(ctx, s, d, slope, &fraction, &rise);
+    dea_context_counters(ctx)->line_searches += !found || fraction < 1;
     if (found) {
       dea_context_counters(ctx)->newton_iterations++;
-      bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
+      bool quadratic = fabs(rise + 0.5) < 0.05 && fraction == 1;
       *done =
           !start && there == 0 && largest(s, s->work.step) < o->newton_stol * s->problem.length_m;
-      d->stuck =
-          there > 0 && share * largest(s, s->work.step) < o->newton_stol * s->problem.length_m
-              ? d->stuck + 1
+      d->stalled =
+          there > 0 && fraction * largest(s, s->work.step) < o->newton_stol * s->problem.length_m
+              ? d->stalled + 1
               : 0;
       d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
-      DEA_TRY(ctx, apply_step(ctx, s, d, share, !*done));
+      DEA_TRY(ctx, apply_step(ctx, s, d, fraction, !*done));
       if (start) {
         return DEA_OK;
       }
-      begin_pair(d, there, share, rise);
-      adapt_shift(s, d, share, rise);
+      begin_pair(d, there, fraction, rise);
+      adapt_shift(s, d, fraction, rise);
       d->chords = 0;
       d->chord = quadratic && there == 0 && d->softness == 1;
       return DEA_OK;
@@ -432,7 +434,7 @@ static dea_status check_divergence(struct dea_context *ctx, const struct dea_sol
                     "%.1e)",
                     d->lost, d->report->residual);
   }
-  return d->stuck < MAX_STALLED
+  return d->stalled < MAX_STALLED
              ? DEA_OK
              : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no step lowers the energy (residual %.1e)",
                         d->report->residual);
@@ -462,8 +464,8 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
       choose_softness(s, d, soft && 2 * i < o->newton_max_nonmonotone);
     }
     DEA_TRY(ctx, evaluate(ctx, s, d));
-    bool fits = d->strict || report->theta_max < o->volume_tol;
-    if (i > 0 && fits && (report->residual < o->newton_rtol || d->unresolved > 2)) {
+    bool settled_volume = d->strict || report->theta_max < o->volume_tol;
+    if (i > 0 && settled_volume && (report->residual < o->newton_rtol || d->unresolved > 2)) {
       return count_there(ctx, s, d, !d->chord && d->shift_Pa == 0 && !s->found.predicted_fits);
     }
     DEA_TRY(ctx, check_divergence(ctx, s, d));
@@ -472,7 +474,7 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
     } else {
       DEA_TRY(ctx, newton_step(ctx, s, d, &done));
     }
-    if (done && fits) {
+    if (done && settled_volume) {
       return count_there(ctx, s, d, false);
     }
   }

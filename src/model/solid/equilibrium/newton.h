@@ -25,10 +25,10 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
 
 /* ---- for continuation, which is Newton's method too ---- */
 
-/* Before u goes on by share step: stresses there into work.predicted, pressures there into the
+/* Before u goes on by fraction step: stresses there into work.predicted, pressures there into the
  * multipliers, each if it is wanted. */
 dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                             const double *step, double share, bool stresses, bool pressures);
+                             const double *step, double fraction, bool stresses, bool pressures);
 /* Whether the energy of the last assembly can tell a change of this size from rounding. */
 bool dea_solid_resolved(const struct dea_solid *s, double change);
 /* Moves the multipliers of the loads; the largest violation over what is allowed. */

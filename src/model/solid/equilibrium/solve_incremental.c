@@ -143,12 +143,12 @@ static double moved_m(const struct dea_solid *s, const double *u, const double *
   return sqrt(3 * sum / (double)count);
 }
 
-/* Displacement that counts as much as the whole load: a share of that in this increment, as far as
- * the displacements that are there tell, which go with the square of the voltage. */
+/* Displacement that counts as much as the whole load: a fraction of that in this increment, as far
+ * as the displacements that are there tell, which go with the square of the voltage. */
 static double unit_of(const struct dea_solid *s, const double *from, const double *goal)
 {
-  double before = from[0] * from[0], way = fabs(goal[0] * goal[0] - before);
-  double grown = moved_m(s, s->state.u, NULL) / sqrt(3) * (way < before ? way / before : 1);
+  double before = from[0] * from[0], length = fabs(goal[0] * goal[0] - before);
+  double grown = moved_m(s, s->state.u, NULL) / sqrt(3) * (length < before ? length / before : 1);
   return path_unit * fmax(grown, path_unit * s->problem.length_m);
 }
 
@@ -322,15 +322,16 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
 
 // Load steps --------------------------------------------------------------------------------------
 
-/* Controls at a share of the increment: the square of the voltage, and all others, in proportion.
+/* Controls at a fraction of the increment: the square of the voltage, and all others, in
+ * proportion.
  */
 static void set_between(const struct dea_solid *s, const double *from, const double *goal,
-                        double share, double *out)
+                        double fraction, double *out)
 {
   for (size_t i = 1; i < s->work.load_steps.control_count; i++) {
-    out[i] = from[i] + share * (goal[i] - from[i]);
+    out[i] = from[i] + fraction * (goal[i] - from[i]);
   }
-  out[0] = sqrt((1 - share) * from[0] * from[0] + share * goal[0] * goal[0]);
+  out[0] = sqrt((1 - fraction) * from[0] * from[0] + fraction * goal[0] * goal[0]);
 }
 
 /* Share of the increment from some controls to others that the controls `at` are at. */
@@ -338,28 +339,28 @@ static double share_of(const struct dea_solid *s, const double *from, const doub
                        const double *at)
 {
   double most = fabs(goal[0] * goal[0] - from[0] * from[0]);
-  double share =
+  double fraction =
       most > 0 ? (at[0] * at[0] - from[0] * from[0]) / (goal[0] * goal[0] - from[0] * from[0]) : 0;
   for (size_t i = 1; i < s->work.load_steps.control_count && !(most > 0); i++) {
-    share = goal[i] != from[i] ? (at[i] - from[i]) / (goal[i] - from[i]) : share;
+    fraction = goal[i] != from[i] ? (at[i] - from[i]) / (goal[i] - from[i]) : fraction;
     most = fabs(goal[i] - from[i]);
   }
-  return share;
+  return fraction;
 }
 
 /* Whether load steps from the start have come farther from where the tangent there leads than a
  * path of equilibria does, up to its limit point (docs/theory/stops.md). */
-static bool left_branch(const struct search *a, double share)
+static bool left_branch(const struct search *a, double fraction)
 {
   const struct dea_solid *s = a->s;
-  double off = 0, way = 0;
+  double off = 0, length = 0;
   for (size_t i = 0; i < 3 * s->problem.grid->node_count && s->found.extrapolated; i++) {
-    double step = share * s->work.extrapolated[i],
+    double step = fraction * s->work.extrapolated[i],
            beyond = s->state.u[i] - a->start.state[i] - step;
     off += beyond * beyond;
-    way += step * step;
+    length += step * step;
   }
-  return off > way * max_off_tangent * max_off_tangent;
+  return off > length * max_off_tangent * max_off_tangent;
 }
 
 /* Whether load steps from the start have stayed on the path that they began on; otherwise the solid

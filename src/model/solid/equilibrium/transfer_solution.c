@@ -244,10 +244,10 @@ static dea_status fade(struct dea_context *ctx, struct dea_solid *s, struct hold
 /* Memory of one, [dofs] or [state_count] each. */
 struct transfer {
   struct dea_arena memory;
-  double *way;    // to where it is transferred
-  double *goal;   // displacements there
-  double *start;  // the same, with no element inverted
-  double *volume; // of nodes
+  double *increment; // to where it is transferred
+  double *goal;      // displacements there
+  double *start;     // the same, with no element inverted
+  double *volume;    // of nodes
   double *state, *controls;
 };
 
@@ -257,7 +257,7 @@ static dea_status transfer_create(struct dea_context *ctx, struct dea_solid *s,
   size_t dofs = s->problem.dofs;
   *out = (struct transfer){.memory = {.ctx = ctx}};
   struct dea_arena *memory = &out->memory;
-  out->way = dea_arena_alloc(memory, dofs, sizeof(double));
+  out->increment = dea_arena_alloc(memory, dofs, sizeof(double));
   out->goal = dea_arena_alloc(memory, dofs, sizeof(double));
   out->start = dea_arena_alloc(memory, dofs, sizeof(double));
   out->volume = dea_arena_alloc(memory, dofs, sizeof(double));
@@ -267,13 +267,13 @@ static dea_status transfer_create(struct dea_context *ctx, struct dea_solid *s,
 }
 
 /* way: from where the solid is to u, where it is free to go. */
-static void set_way(const struct dea_solid *s, const double *u, double *way)
+static void set_increment(const struct dea_solid *s, const double *u, double *increment)
 {
-  memset(way, 0, s->problem.dofs * sizeof *way);
+  memset(increment, 0, s->problem.dofs * sizeof *increment);
   for (size_t i = 0; i < 3 * s->problem.grid->node_count; i++) {
-    way[i] = u[i] - s->state.u[i];
+    increment[i] = u[i] - s->state.u[i];
   }
-  dea_solid_release_held(s, way);
+  dea_solid_release_held(s, increment);
 }
 
 /* From c->start, held near to c->goal at first. */
@@ -282,13 +282,14 @@ static dea_status transfer_held(struct dea_context *ctx, struct dea_solid *s, st
 {
   struct hold hold = {.u0 = c->goal, .volume = c->volume};
   dea_solid_lump_volume(s, c->volume);
-  set_way(s, c->start, c->way);
+  set_increment(s, c->start, c->increment);
   for (size_t i = 0; i < s->problem.dofs; i++) {
-    s->state.u[i] += c->way[i];
+    s->state.u[i] += c->increment[i];
   }
   dea_status status = fade(ctx, s, &hold);
-  memset(c->way, 0, s->problem.dofs * sizeof *c->way);
-  status = status == DEA_OK ? dea_solid_perturb(ctx, s, c->way, NULL, NULL, report, found) : status;
+  memset(c->increment, 0, s->problem.dofs * sizeof *c->increment);
+  status = status == DEA_OK ? dea_solid_perturb(ctx, s, c->increment, NULL, NULL, report, found)
+                            : status;
   return dea_solid_excuse(ctx, status);
 }
 
@@ -297,16 +298,16 @@ static dea_status transfer(struct dea_context *ctx, struct dea_solid *s, struct 
                            const double *u, struct dea_solid_report *report, bool *found)
 {
   size_t left;
-  set_way(s, u, c->way);
+  set_increment(s, u, c->increment);
   for (size_t i = 0; i < s->problem.dofs; i++) {
-    c->goal[i] = c->start[i] = s->state.u[i] + c->way[i];
+    c->goal[i] = c->start[i] = s->state.u[i] + c->increment[i];
   }
   DEA_TRY(ctx, dea_solid_untangle(ctx, s, c->start, &left));
   if (left > 0) {
     return DEA_OK;
   }
-  set_way(s, c->start, c->way);
-  DEA_TRY(ctx, dea_solid_perturb(ctx, s, c->way, NULL, NULL, report, found));
+  set_increment(s, c->start, c->increment);
+  DEA_TRY(ctx, dea_solid_perturb(ctx, s, c->increment, NULL, NULL, report, found));
   return *found ? DEA_OK : transfer_held(ctx, s, c, report, found);
 }
 

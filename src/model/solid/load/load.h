@@ -59,9 +59,9 @@ struct dea_solid_load {
   size_t multiplier_count;
   double *multiplier;
   double (*update)(void *self, const double *u);
-  /* Moves them as a share of a step of Newton's method from u does, before u moves; NULL: such a
+  /* Moves them as a fraction of a step of Newton's method from u does, before u moves; NULL: such a
    * step leaves them. */
-  void (*predict)(void *self, const double *u, const double *step, double share);
+  void (*predict)(void *self, const double *u, const double *step, double fraction);
   /* The constraint of multiplier i at u; NULL: it is one of the whole, which `whole` takes. */
   void (*constraint)(const void *self, size_t i, const double *u, struct dea_load_constraint *out);
 };

@@ -395,16 +395,16 @@ static dea_status evaluate(const void *self, size_t at, const double *u, enum de
 static double update(void *self, const double *u)
 {
   struct dea_contact *c = self;
-  double way = 0, whole = 0, largest = 0;
+  double changed = 0, whole = 0, largest = 0;
   for (size_t at = 0; at < count_of(c); at++) {
     const double p = c->pressure[at], gap = gap_at(c, at, u, NULL).value;
     c->pressure[at] = fmax(p - c->stiffness * gap, 0);
-    way += c->weight[at] * fabs(c->pressure[at] - p);
+    changed += c->weight[at] * fabs(c->pressure[at] - p);
     largest = fmax(largest, fabs(c->pressure[at] - p));
     whole += c->weight[at] * c->pressure[at];
   }
   double gap_error = largest / (c->stiffness * gap_none * c->tip.radius_m);
-  return whole > 0 ? fmin(gap_error, way / (c->tolerance * whole)) : gap_error;
+  return whole > 0 ? fmin(gap_error, changed / (c->tolerance * whole)) : gap_error;
 }
 
 static double change_of(const struct gap *gap, const double *step)
@@ -418,13 +418,13 @@ static double change_of(const struct gap *gap, const double *step)
 
 /* A step takes the gap away where the surface touches: p - k (g + n . step), docs/theory/loads.md.
  */
-static void predict(void *self, const double *u, const double *step, double share)
+static void predict(void *self, const double *u, const double *step, double fraction)
 {
   struct dea_contact *c = self;
   for (size_t at = 0; at < count_of(c); at++) {
     const double p = c->pressure[at], k = c->stiffness;
     const struct gap gap = gap_at(c, at, u, NULL);
-    c->pressure[at] = p > k * gap.value ? fmax(p - share * k * change_of(&gap, step), 0) : 0;
+    c->pressure[at] = p > k * gap.value ? fmax(p - fraction * k * change_of(&gap, step), 0) : 0;
   }
 }
 

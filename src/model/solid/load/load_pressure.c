@@ -248,11 +248,11 @@ static double update(void *self, const double *u)
   return fabs(p->v - p->now) / (allowed * fmax(fabs(p->now), p->own.volume_m3));
 }
 
-static void predict(void *self, const double *u, const double *step, double share)
+static void predict(void *self, const double *u, const double *step, double fraction)
 {
   struct dea_pressure *p = self;
   const double x = dea_pressure_volume_m3(p, u) - p->now;
-  p->lambda -= share * p->own.stiffness_Pa_per_m3 * (x + along(p, u, step));
+  p->lambda -= fraction * p->own.stiffness_Pa_per_m3 * (x + along(p, u, step));
 }
 
 static dea_status evaluate(const void *self, size_t piece, const double *u,

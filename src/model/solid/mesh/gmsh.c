@@ -56,16 +56,16 @@ static double distance_to(const struct dea_gmsh_shape *shape, const double x[2])
  * triangle has two sides on one, with more elements for the same; where a thin crescent is left
  * between an arc and another edge, elements have to be as short as it is thin. curvature: elements
  * to a full turn. */
-static const struct way {
+static const struct recipe {
   int recombine, algorithm, subdivision, curvature;
   double size;
-} ways[] = {
+} recipes[] = {
     {1, 1, 0, 12, 1}, {1, 3, 0, 12, 1}, {0, 1, 1, 20, 2}, {0, 1, 1, 40, 1}, {0, 1, 1, 80, 1}};
-enum { WAYS = sizeof ways / sizeof ways[0] };
+enum { RECIPES = sizeof recipes / sizeof recipes[0] };
 static const double good_jacobian = 0.2; // smallest Jacobian with which another way is not tried
 
 static void write_settings(struct dea_text *out, const struct dea_gmsh_plan *plan,
-                           const struct way *way)
+                           const struct recipe *recipe)
 {
   dea_text_add(
       out,
@@ -76,8 +76,8 @@ static void write_settings(struct dea_text *out, const struct dea_gmsh_plan *pla
       "Mesh.SecondOrderLinear = 0;\nMesh.SecondOrderIncomplete = 0;\n"
       "Mesh.MeshSizeExtendFromBoundary = 0;\nMesh.MeshSizeFromPoints = 0;\n"
       "Mesh.MeshSizeFromCurvature = %d;\nMesh.MeshSizeMin = 0;\nMesh.MeshSizeMax = %.10g;\n",
-      way->recombine, way->algorithm, way->subdivision, plan->order, way->curvature,
-      mm * plan->size_m * way->size);
+      recipe->recombine, recipe->algorithm, recipe->subdivision, plan->order, recipe->curvature,
+      mm * plan->size_m * recipe->size);
 }
 
 /* Numbers of what was written last; decimals: of coordinates. */
@@ -156,9 +156,10 @@ static void write_contour(struct dea_text *out, struct numbers *last,
 /* A field of sizes that grow from `fine` at the contours; its number is twice `source`. Distances
  * are those to points half a fine element apart. */
 static void write_field(struct dea_text *out, const struct dea_gmsh_plan *plan,
-                        const struct dea_gmsh_shape *shape, size_t source, const struct way *way)
+                        const struct dea_gmsh_shape *shape, size_t source,
+                        const struct recipe *recipe)
 {
-  double fine = shape->edge_size_m, step = 0.5 * fine, scale = mm * way->size;
+  double fine = shape->edge_size_m, step = 0.5 * fine, scale = mm * recipe->size;
   double growth = plan->growth > 0 ? plan->growth : 0.4;
   double length = 0;
   for (size_t k = 0; k < shape->count; k++) {
@@ -203,7 +204,7 @@ static double size_at(const struct dea_gmsh_plan *plan, double growth, double x,
 
 /* The sizes on a lattice of points around all of them, which gmsh interpolates: its file. */
 static void write_sizes(struct dea_text *out, const struct dea_gmsh_plan *plan,
-                        const struct way *way)
+                        const struct recipe *recipe)
 {
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, largest = 0;
   double growth = plan->growth > 0 ? plan->growth : 0.4;
@@ -225,13 +226,13 @@ static void write_sizes(struct dea_text *out, const struct dea_gmsh_plan *plan,
   for (int i = 0; i < count[0]; i++) {
     for (int j = 0; j < count[1]; j++) {
       double size = size_at(plan, growth, low[0] + i * step, low[1] + j * step);
-      dea_text_add(out, "%.6g\n", mm * way->size * size);
+      dea_text_add(out, "%.6g\n", mm * recipe->size * size);
     }
   }
 }
 
 static void write_fields(struct dea_text *out, const struct dea_gmsh_plan *plan,
-                         const struct way *way)
+                         const struct recipe *recipe)
 {
   size_t sources = 0;
   if (plan->size_count > 0) {
@@ -241,12 +242,12 @@ static void write_fields(struct dea_text *out, const struct dea_gmsh_plan *plan,
   }
   for (size_t i = 0; i < plan->shape_count; i++) {
     if (plan->shapes[i].edge_size_m > 0) {
-      write_field(out, plan, &plan->shapes[i], ++sources, way);
+      write_field(out, plan, &plan->shapes[i], ++sources, recipe);
     }
   }
   for (size_t i = 0; i < plan->curve_count; i++) {
     if (plan->curves[i].edge_size_m > 0) {
-      write_field(out, plan, &plan->curves[i], ++sources, way);
+      write_field(out, plan, &plan->curves[i], ++sources, recipe);
     }
   }
   if (sources > 0) {
@@ -260,11 +261,11 @@ static void write_fields(struct dea_text *out, const struct dea_gmsh_plan *plan,
 }
 
 static void write_script(struct dea_text *out, const struct dea_gmsh_plan *plan,
-                         const struct way *way)
+                         const struct recipe *recipe)
 {
   struct numbers last = {.decimals = decimals_of(plan)};
   void *locale = dea_c_locale_enter();
-  write_settings(out, plan, way);
+  write_settings(out, plan, recipe);
   for (size_t i = 0; i < plan->shape_count; i++) {
     for (size_t k = 0; k < plan->shapes[i].count; k++) {
       write_contour(out, &last, &plan->shapes[i].contours[k]);
@@ -276,7 +277,7 @@ static void write_script(struct dea_text *out, const struct dea_gmsh_plan *plan,
   }
   dea_text_add(out, "Physical Surface(\"all\") = Surface{:};\n"
                     "Physical Curve(\"all\") = Curve{:};\n");
-  write_fields(out, plan, way);
+  write_fields(out, plan, recipe);
   dea_c_locale_leave(locale);
 }
 
@@ -378,16 +379,17 @@ static dea_status check_quality(struct dea_context *ctx, const struct dea_gmsh_p
 }
 
 static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
-                          const struct way *way, const char *folder, struct dea_plane_mesh **out)
+                          const struct recipe *recipe, const char *folder,
+                          struct dea_plane_mesh **out)
 {
   struct dea_text script = {.ctx = ctx};
   char said[DEA_PROGRAM_SAID];
-  write_script(&script, plan, way);
+  write_script(&script, plan, recipe);
   dea_status status = dea_text_write(ctx, &script, folder, "mesh.geo");
   if (status == DEA_OK && plan->size_count > 0) {
     struct dea_text sizes = {.ctx = ctx};
     void *locale = dea_c_locale_enter();
-    write_sizes(&sizes, plan, way);
+    write_sizes(&sizes, plan, recipe);
     dea_c_locale_leave(locale);
     status = dea_text_write(ctx, &sizes, folder, SIZES_FILE);
     dea_text_free(&sizes);
@@ -422,9 +424,9 @@ static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *
   DEA_TRY(ctx, dea_folder_create_temporary(ctx, "gmsh", folder));
   dea_status status = DEA_E_DESIGN;
   double best = -INFINITY;
-  for (size_t i = 0; i < WAYS && status == DEA_E_DESIGN && best < good_jacobian; i++) {
+  for (size_t i = 0; i < RECIPES && status == DEA_E_DESIGN && best < good_jacobian; i++) {
     struct dea_plane_mesh *mesh = NULL;
-    status = mesh_in(ctx, plan, &ways[i], folder, &mesh);
+    status = mesh_in(ctx, plan, &recipes[i], folder, &mesh);
     double jacobian = status == DEA_OK ? dea_plane_mesh_smallest_jacobian(mesh, NULL) : -INFINITY;
     if (jacobian > best) {
       dea_plane_mesh_destroy(ctx, *out);

@@ -333,12 +333,12 @@ static dea_status set_inertia(struct dea_context *ctx, struct dea_solid_time *t,
   const struct dea_alpha *alpha = &t->alpha;
   struct dea_solid_inertia *inertia = &t->inertia;
   const double *u = t->solid->state.u;
-  double share = alpha->f / (1 - alpha->f), mass = alpha->m / (1 - alpha->f);
+  double fraction = alpha->f / (1 - alpha->f), mass = alpha->m / (1 - alpha->f);
   inertia->factor = (1 - alpha->m) / ((1 - alpha->f) * alpha->beta * h * h);
   DEA_TRY(ctx, dea_solid_mass_apply(ctx, t->solid, t->a, t->work));
   for (size_t i = 0; i < t->count; i++) {
     inertia->around[i] = u[i] + h * t->v[i] + h * h * (0.5 - alpha->beta) * t->a[i];
-    inertia->constant[i] = mass * t->work[i] + share * t->F[i];
+    inertia->constant[i] = mass * t->work[i] + fraction * t->F[i];
   }
   return DEA_OK;
 }
@@ -504,12 +504,12 @@ static double relaxing(const struct dea_solid_time *t)
 static double step_error(const struct dea_solid_time *t)
 {
   const double *u = t->solid->state.u, *from = t->keep;
-  double h = t->step_s, before = t->step_before_s, most = 0, share = relaxing(t);
+  double h = t->step_s, before = t->step_before_s, most = 0, fraction = relaxing(t);
   double weight = before > 0 ? 0.25 * h / (h + before) : 0.125;
   for (size_t i = 0; i < t->count; i++) {
     double way = before > 0 ? h / before * (from[i] - t->u_before[i]) : 0;
     double off = t->inertial ? h * h * (t->a_next[i] - t->a[i]) / 12
-                             : share * weight * (u[i] - from[i] - way);
+                             : fraction * weight * (u[i] - from[i] - way);
     most = fmax(most, fabs(off));
   }
   return most;

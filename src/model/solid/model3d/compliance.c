@@ -1,0 +1,227 @@
+#include "model/solid/model3d/compliance.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/potential.h"
+#include "model/solid/equilibrium/adjoint.h"
+#include "model/solid/equilibrium/modes.h"
+#include "model/solid/model3d/air_mass.h"
+#include "model/solid/model3d/solid_fields.h"
+
+#include <assert.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+enum { COORDINATE, VOLTAGE, ANSWERS };
+
+struct work {
+  struct dea_solid *solid;
+  struct dea_adjoint *adjoint;
+  double *rate; // [dofs] dR/dV
+  double voltage_V;
+};
+
+/* Residuals and energy are of second degree in the voltage, so that central differences over any
+ * step are exact: dR/dV, and of the energy at fixed unknowns the first and the second slope. */
+static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_energy[2])
+{
+  struct dea_solid *s = w->solid;
+  const double step_V = fmax(fabs(w->voltage_V), 1e3);
+  double energy_J[3] = {0};
+  dea_status status = DEA_OK;
+  for (int side = -1; side <= 1 && status == DEA_OK; side++) {
+    s->state.voltage_V = w->voltage_V + side * step_V;
+    status = dea_adjoint_assemble(ctx, w->adjoint, s->state.voltage_V, &energy_J[side + 1]);
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      w->rate[i] += side * s->work.g[i] / (2 * step_V);
+    }
+  }
+  s->state.voltage_V = w->voltage_V;
+  DEA_TRY(ctx, status);
+  by_energy[0] = (energy_J[2] - energy_J[0]) / (2 * step_V);
+  by_energy[1] = (energy_J[2] - 2 * energy_J[1] + energy_J[0]) / (step_V * step_V);
+  return DEA_OK;
+}
+
+enum { MODES = DEA_COMPLIANCE_MODES };
+
+/* The lowest modes phi: 1/omega^2, (phi . slope)/omega and -(phi . R_V)/omega. */
+struct modes {
+  double inverse[MODES], along[MODES], by_rate[MODES];
+};
+
+/* Added masses of the modes [MODES][dofs]. */
+static dea_status find_air(struct dea_context *ctx, const struct dea_air *air, const double *vector,
+                           size_t dofs, double out[MODES * MODES])
+{
+  enum { CELLS = 3000 };
+  static_assert((int)MODES <= (int)DEA_AIR_SHAPES_MAX, "room");
+  struct dea_field_mesh *surface, *moved;
+  DEA_TRY(ctx, dea_solid_surface(ctx, air->film.solid, air->ply, &surface));
+  const size_t size = 3 * surface->point_count;
+  double *shapes = dea_solid_alloc(ctx, MODES * size, sizeof *shapes);
+  dea_status status = shapes == NULL ? DEA_E_MEMORY : DEA_OK;
+  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
+    status = dea_motions_surface(ctx, &air->film, air->ply, vector + k * dofs, &moved);
+    if (status == DEA_OK) {
+      memcpy(shapes + k * size, dea_field_mesh_find(moved, "displacement_m")->values,
+             size * sizeof *shapes);
+      dea_field_mesh_destroy(ctx, moved);
+    }
+  }
+  status = status == DEA_OK ? dea_air_mass(ctx, surface, air->sector, CELLS, shapes, MODES, out)
+                            : status;
+  dea_free(ctx, shapes);
+  dea_field_mesh_destroy(ctx, surface);
+  return DEA_CHAIN(ctx, status);
+}
+
+/* The modes with gas, in the space of those without: with the added masses A the inverse squares
+ * are the eigenvalues of (1_kl + A_kl)/(omega_k omega_l), by whose vectors the others turn. */
+static dea_status add_air(struct dea_context *ctx, const double *A, double density,
+                          struct modes *modes)
+{
+  const struct modes was = *modes;
+  double B[MODES * MODES], values[MODES];
+  for (int i = 0; i < MODES * MODES; i++) {
+    const int k = i / MODES, l = i % MODES;
+    B[i] = sqrt(was.inverse[k] * was.inverse[l]) * ((k == l ? 1 : 0) + density * A[i]);
+    if (!isfinite(B[i])) { // an unstable mode
+      return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "the state is unstable");
+    }
+  }
+  if (LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'U', MODES, B, MODES, values) != 0) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "modes with the gas around the film");
+  }
+  for (int k = 0; k < MODES; k++) {
+    const double *y = B + MODES * (MODES - 1 - k); // descending
+    modes->inverse[k] = values[MODES - 1 - k];
+    modes->along[k] = modes->by_rate[k] = 0;
+    for (int l = 0; l < MODES; l++) {
+      modes->along[k] += y[l] * was.along[l];
+      modes->by_rate[k] += y[l] * was.by_rate[l];
+    }
+  }
+  return DEA_OK;
+}
+
+/* With their parts of dq/dF and dq/dV; of a viscous film of those that move at once. */
+static dea_status find_modes(struct dea_context *ctx, struct work *w, double copies,
+                             const double *slope, const struct dea_air *air,
+                             struct dea_compliance *out)
+{
+  const size_t dofs = w->solid->problem.dofs;
+  double square[MODES], mass[MODES * MODES],
+      *vector = dea_solid_alloc(ctx, MODES * dofs, sizeof *vector);
+  struct modes modes;
+  const bool fast = isfinite(out->fast_by_force);
+  const double by_force = fast ? out->fast_by_force : out->by_force,
+               by_voltage = fast ? out->fast_by_voltage : out->by_voltage;
+  dea_status status = vector == NULL ? DEA_E_MEMORY
+                                     : dea_solid_modes_whole(ctx, w->solid, DEA_MODES_BY_MASS,
+                                                             MODES, square, vector);
+  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
+    const double *mode = vector + k * dofs, omega = sqrt(square[k]);
+    modes.inverse[k] = 1 / square[k];
+    modes.along[k] = dea_solid_dot(w->solid, mode, slope) / omega;
+    modes.by_rate[k] = -dea_solid_dot(w->solid, mode, w->rate) / omega;
+  }
+  if (status == DEA_OK && air->density_kg_per_m3 > 0) {
+    status = find_air(ctx, air, vector, dofs, mass);
+    status = status == DEA_OK ? add_air(ctx, mass, air->density_kg_per_m3, &modes) : status;
+  }
+  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
+    out->modes[k] =
+        (struct dea_compliance_mode){1 / (2 * acos(-1.0) * sqrt(modes.inverse[k])),
+                                     modes.along[k] * modes.along[k] / (copies * by_force),
+                                     modes.along[k] * modes.by_rate[k] / by_voltage};
+  }
+  dea_free(ctx, vector);
+  return DEA_CHAIN(ctx, status);
+}
+
+/* du/dF = K^-1 q_u / copies, du/dV = -K^-1 R_V. */
+static dea_status find_slopes(struct dea_context *ctx, struct work *w, double copies,
+                              const double *slope, const double by_energy[2],
+                              struct dea_compliance *out)
+{
+  const size_t size = w->solid->problem.dofs * sizeof(double);
+  static const bool wanted[ANSWERS] = {true, true};
+  memcpy(dea_adjoint_slope(w->adjoint, COORDINATE), slope, size);
+  memcpy(dea_adjoint_slope(w->adjoint, VOLTAGE), w->rate, size);
+  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, wanted));
+  const double *by_force = dea_adjoint_answer(w->adjoint, COORDINATE),
+               *by_rate = dea_adjoint_answer(w->adjoint, VOLTAGE);
+  out->by_force = dea_solid_dot(w->solid, by_force, slope) / copies;
+  out->by_voltage = -dea_solid_dot(w->solid, by_force, w->rate);
+  out->charge_by_force = -dea_solid_dot(w->solid, by_rate, slope);
+  out->charge_C = -copies * by_energy[0];
+  out->charge_by_voltage = copies * (dea_solid_dot(w->solid, by_rate, w->rate) - by_energy[1]);
+  return DEA_OK;
+}
+
+/* Slopes of what moves at once and, unless air is NULL, its modes: with the tangent of a step that
+ * takes no time. */
+static dea_status find_fast(struct dea_context *ctx, struct work *w, double copies,
+                            const double *slope, const struct dea_branches *branches,
+                            const struct dea_air *air, struct dea_compliance *out)
+{
+  struct dea_solid *s = w->solid;
+  struct dea_internal_variables *held;
+  static const bool wanted = true;
+  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, branches, &held));
+  dea_internal_variables_begin(held, s, 0);
+  s->state.internal_variables = held;
+  dea_solid_forget(s);
+  dea_status status = dea_adjoint_create(ctx, s, 1, &w->adjoint);
+  if (status == DEA_OK) {
+    memcpy(dea_adjoint_slope(w->adjoint, 0), slope, s->problem.dofs * sizeof *slope);
+    status = dea_adjoint_solve(ctx, w->adjoint, &wanted);
+  }
+  if (status == DEA_OK) {
+    const double *answer = dea_adjoint_answer(w->adjoint, 0);
+    out->fast_by_force = dea_solid_dot(s, answer, slope) / copies;
+    out->fast_by_voltage = -dea_solid_dot(s, answer, w->rate);
+  }
+  dea_adjoint_destroy(ctx, w->adjoint);
+  w->adjoint = NULL;
+  if (status == DEA_OK && air != NULL) {
+    status = find_modes(ctx, w, copies, slope, air, out);
+  }
+  s->state.internal_variables = NULL;
+  dea_solid_forget(s);
+  dea_internal_variables_destroy(ctx, held);
+  return DEA_CHAIN(ctx, status);
+}
+
+dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid, double copies,
+                               double voltage_V, const double *slope,
+                               const struct dea_branches *branches, const struct dea_air *air,
+                               int with, struct dea_compliance *out)
+{
+  struct work w = {.solid = solid, .voltage_V = voltage_V};
+  double energy_J, by_energy[2] = {0};
+  out->fast_by_force = out->fast_by_voltage = NAN;
+  w.rate = dea_solid_alloc(ctx, solid->problem.dofs, sizeof *w.rate);
+  for (size_t k = 0; k < DEA_COMPLIANCE_MODES; k++) {
+    out->modes[k] = (struct dea_compliance_mode){NAN, NAN, NAN};
+  }
+  dea_status status =
+      w.rate == NULL ? DEA_E_MEMORY : dea_adjoint_create(ctx, solid, ANSWERS, &w.adjoint);
+  status = status == DEA_OK ? find_rate(ctx, &w, by_energy) : status;
+  status = status == DEA_OK ? find_slopes(ctx, &w, copies, slope, by_energy, out) : status;
+  dea_adjoint_destroy(ctx, w.adjoint);
+  w.adjoint = NULL;
+  const bool modes = with & DEA_COMPLIANCE_WITH_MODES;
+  if (status == DEA_OK && (with & DEA_COMPLIANCE_WITH_FAST)) {
+    status = find_fast(ctx, &w, copies, slope, branches, modes ? air : NULL, out);
+  } else if (status == DEA_OK && modes) {
+    status = find_modes(ctx, &w, copies, slope, air, out);
+  }
+  dea_solid_hold_potential(solid, voltage_V, solid->state.u);
+  if (status == DEA_OK) { // reactions are those of the equilibrium again
+    status = dea_solid_assemble(ctx, solid, voltage_V, DEA_FORCE, &energy_J);
+  }
+  dea_free(ctx, w.rate);
+  return DEA_CHAIN(ctx, status);
+}

@@ -1,0 +1,408 @@
+/* Slopes of the model "3d" by changed devices (docs/theory/gradients.md). */
+#include "model/solid/actuator/disc_mesh.h"
+#include "model/solid/assembly/charge_control.h"
+#include "model/solid/assembly/matrix.h"
+#include "model/solid/model3d/solid_model.h"
+#include "result/columns.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool same_hold(const struct dea_layout_support *a, const struct dea_layout_support *b)
+{
+  return a->region == b->region && a->edge == b->edge && a->within == b->within &&
+         a->components == b->components && a->hinged == b->hinged;
+}
+
+static bool same_place(const struct dea_layout_body *a, const struct dea_layout_body *b)
+{
+  return a->region == b->region && a->free == b->free && a->moved == b->moved;
+}
+
+/* What is held where, but not how far it is moved. */
+static bool same_supports(const struct dea_layout *a, const struct dea_layout *b)
+{
+  bool same = a->support_count == b->support_count && a->body_count == b->body_count &&
+              a->channel_count == b->channel_count;
+  for (size_t i = 0; same && i < a->support_count; i++) {
+    same = same_hold(&a->supports[i], &b->supports[i]);
+  }
+  for (size_t i = 0; same && i < a->body_count; i++) {
+    same = same_place(&a->bodies[i], &b->bodies[i]);
+  }
+  return same;
+}
+
+/* Whether nodes are held and follow bodies as before: unknowns at which slopes are taken stay. */
+static dea_status check_held(struct dea_context *ctx, const struct dea_model *model)
+{
+  const struct dea_model *own = &model->variant->own;
+  const struct dea_solid_problem *a = &own->solid->problem, *b = &model->solid->problem;
+  const bool same =
+      a->dofs == b->dofs && memcmp(a->held, b->held, a->dofs) == 0 &&
+      memcmp(own->follows, model->follows, model->mesh_node_count * sizeof *model->follows) == 0;
+  return same ? DEA_OK
+              : dea_fail(ctx, DEA_E_ARGUMENT,
+                         "the mesh cannot follow: supports and bodies would hold other nodes");
+}
+
+/* Loads stand where a solve would bring them. */
+static void place_loads(const struct dea_solid_problem *p)
+{
+  for (size_t i = 0; i < p->load_count; i++) {
+    if (p->loads[i].parameter_count > 0) {
+      memcpy(p->loads[i].now, p->loads[i].goal, p->loads[i].parameter_count * sizeof(double));
+    }
+  }
+}
+
+/* What controls have moved has their values, whatever the changed device says of it. */
+static void keep_controls(struct dea_model *model)
+{
+  const struct dea_model *own = &model->variant->own;
+  const struct dea_solid *from = own->solid;
+  struct dea_solid *to = model->solid;
+  for (size_t i = 0; i < model->layout->body_count; i++) {
+    for (size_t k = 0; k < 6; k++) {
+      const size_t at = 3 * to->problem.bodies[i].node + k;
+      if ((own->controls[i].place >> k) & 1) {
+        to->problem.held[at] = from->problem.held[at];
+        to->state.u_goal[at] = from->state.u_goal[at];
+      }
+      if ((own->controls[i].force >> k) & 1) {
+        model->push[i][k] = own->push[i][k];
+      }
+    }
+    dea_solid_body_load(model, i, model->push[i]);
+  }
+  for (size_t i = 0; i < to->problem.dofs && own->pull.slope != NULL; i++) {
+    dea_solid_force(to)[i] += own->pull.force / own->copies * own->pull.slope[i];
+  }
+  dea_solid_pressures_set(model, own->pressure_factor);
+  place_loads(&to->problem);
+}
+
+/* Mesh, part materials and loads of a changed device, with a solid that has them. */
+static dea_status build_variant(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_model *own = &model->variant->own;
+  DEA_TRY(ctx,
+          dea_device_mesh_follow(ctx, model->device, &model->settings, &own->mesh, &model->mesh));
+  dea_solid_model_check_mesh(model);
+  if (!same_supports(model->layout, own->layout)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a change of what is held");
+  }
+  DEA_TRY(ctx, dea_plies_create(ctx, &model->mesh, &model->memory, &model->plies));
+  dea_solid_model_find_band(model);
+  DEA_TRY(ctx, dea_solid_model_assemble(ctx, model));
+  DEA_TRY(ctx, dea_solid_dead_loads_set(ctx, model));
+  DEA_TRY(ctx, dea_solid_supports_hold(ctx, model, true));
+  DEA_TRY(ctx, dea_solid_bodies_load(ctx, model));
+  keep_controls(model);
+  if (own->indent != NULL) { // in the place of the tip that stands for it
+    const struct dea_solid_load tip = dea_contact_load(own->indent->contact);
+    DEA_TRY(ctx, dea_solid_add_load(ctx, model->solid, &tip));
+  }
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    if (model->pressures[i] != NULL && own->pressures[i] != NULL) {
+      dea_pressure_hold(model->pressures[i], own->pressures[i]);
+    }
+  }
+  for (size_t i = 0; i < model->layout->contact_count; i++) {
+    if (model->contacts[i] != NULL && own->contacts[i] != NULL) {
+      dea_contact_hold(model->contacts[i], own->contacts[i]);
+    }
+  }
+  DEA_TRY(ctx, check_held(ctx, model));
+  return DEA_CHAIN(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, model->contacts,
+                                            &model->observer));
+}
+
+/* Supports and bodies to where the changed device has them: these are no unknowns, which stay. */
+static void move_held(struct dea_model_variant *v)
+{
+  struct dea_solid *s = v->own.solid;
+  const size_t dofs = s->problem.dofs;
+  for (size_t i = 0; i < dofs; i++) {
+    const bool moves = s->problem.held[i] == DEA_PRESCRIBED;
+    v->shift[i] = moves ? v->solid->state.u_goal[i] - s->state.u_goal[i] : 0;
+  }
+  dea_solid_frame_vector(s, true, v->shift);
+  memcpy(v->u, s->state.u, dofs * sizeof *v->u);
+  for (size_t i = 0; i < dofs; i++) {
+    s->state.u[i] += v->shift[i];
+  }
+  v->is_moved = true;
+}
+
+/* A tip that is pressed in holds what it touches, on the device that is there now. */
+static dea_status enter_tip(struct dea_context *ctx, struct dea_model *model,
+                            const struct dea_pressed *pressed)
+{
+  struct dea_model_variant *v = model->variant;
+  const struct dea_pressed own = {model->indent->probe, model->indent->depth_m};
+  DEA_TRY(ctx,
+          dea_indent_create_variant(ctx, &model->mesh, model->solid,
+                                    pressed != NULL ? pressed : &own, v->own.indent, &v->indent));
+  model->indent = v->indent;
+  return DEA_OK;
+}
+
+/* Mesh, part materials, and loads of a changed device under the solid. */
+static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
+                               const struct dea_device *device)
+{
+  struct dea_model_variant *v = model->variant;
+  struct dea_solid *s = v->own.solid;
+  model->device = device;
+  model->layout = NULL;
+  model->memory = (struct dea_arena){.ctx = ctx};
+  model->mesh = (struct dea_layout_mesh){.memory = {.ctx = ctx}};
+  model->solid = NULL;
+  model->observer = NULL;
+  model->springs = NULL;
+  model->pressures = NULL;
+  model->surfaces = NULL;
+  model->contacts = NULL;
+  model->touching = NULL;
+  dea_status status = build_variant(ctx, model);
+  v->solid = model->solid;
+  model->solid = s;
+  DEA_TRY(ctx, status);
+  s->problem.grid = v->solid->problem.grid;
+  s->problem.part_materials = v->solid->problem.part_materials;
+  s->problem.share = v->solid->problem.share;
+  s->problem.point_mass = v->solid->problem.point_mass;
+  s->problem.loads = v->solid->problem.loads;
+  s->problem.load_count = v->solid->problem.load_count;
+  memcpy(s->state.force, v->solid->state.force_goal, s->problem.dofs * sizeof *s->state.force);
+  for (size_t k = 1; k < model->layout->channel_count; k++) {
+    s->state.own_V[k] = model->layout->channels[k].own_V;
+  }
+  move_held(v);
+  return DEA_OK;
+}
+
+static dea_status enter(struct dea_context *ctx, void *self, const struct dea_design_change *change,
+                        int side)
+{
+  struct dea_model *model = self;
+  const struct dea_device *device = change->device[side];
+  if (device == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "there is no device with a number a little beside it");
+  }
+  DEA_TRY(ctx, device != model->variant->own.device ? enter_device(ctx, model, device) : DEA_OK);
+  return DEA_CHAIN(ctx,
+                   model->indent != NULL ? enter_tip(ctx, model, change->pressed[side]) : DEA_OK);
+}
+
+static dea_status hold_tip(struct dea_context *ctx, void *self)
+{
+  return enter_tip(ctx, self, NULL);
+}
+
+static void leave(struct dea_context *ctx, void *self)
+{
+  struct dea_model *model = self;
+  struct dea_model_variant *v = model->variant;
+  struct dea_solid *s = v->own.solid;
+  dea_indent_end_variant(ctx, s, v->own.indent, v->indent);
+  v->indent = NULL;
+  if (model->device != v->own.device) {
+    dea_observer_destroy(ctx, model->observer);
+    dea_solid_destroy(ctx, v->solid);
+    v->solid = NULL;
+    dea_solid_model_free_parts(ctx, model);
+  }
+  *model = v->own;
+  s->problem = v->problem;
+  if (v->is_moved) {
+    memcpy(s->state.u, v->u, s->problem.dofs * sizeof *s->state.u);
+    memset(v->shift, 0, s->problem.dofs * sizeof *v->shift);
+  }
+  v->is_moved = false;
+  memcpy(s->state.force, v->force, s->problem.dofs * sizeof *s->state.force);
+  memcpy(s->state.own_V, v->own_V, (s->problem.channel_count + 1) * sizeof *s->state.own_V);
+}
+
+static struct dea_gradient_film film_of(const struct dea_model *model)
+{
+  return (struct dea_gradient_film){
+      .solid = model->solid, .films = model->plies.films, .copies = model->copies};
+}
+
+static dea_status slope(struct dea_context *ctx, void *self, int column, double *out,
+                        double *pressures, bool *known)
+{
+  struct dea_model *model = self;
+  const char *key = dea_point_columns[column].key;
+  const struct dea_gradient_film film = film_of(model);
+  *known = true;
+  if (strcmp(key, "highest_z_m") == 0 || strcmp(key, "lowest_z_m") == 0) {
+    const struct dea_model_place place =
+        dea_solid_model_height(model, strcmp(key, "highest_z_m") == 0 ? 1 : -1);
+    out[3 * place.node[0] + 2] += 0.5;
+    out[3 * place.node[1] + 2] += 0.5;
+  } else if (strcmp(key, "force_N") == 0 && model->indent != NULL) { // the last load
+    dea_indent_force_slope(model->indent, dea_solid_displacement(model->solid), out,
+                           pressures + dea_solid_pressure_count(model->solid));
+  } else if (strcmp(key, "tip_depth_m") == 0) { // of no unknown
+    *known = model->indent != NULL;
+  } else if (!dea_observer_column_gradient(model->observer, model->solid, column, out)) {
+    DEA_TRY(ctx, dea_gradient_film_slope(ctx, &film, &model->variant->places, column, out,
+                                         pressures, known));
+  }
+  return DEA_OK;
+}
+
+static dea_status monitor_slope(struct dea_context *ctx, void *self, size_t i, double *out,
+                                double *direction, bool *known)
+{
+  struct dea_model *model = self;
+  const struct dea_model_variant *v = model->variant;
+  (void)ctx;
+  *known = dea_observer_gradient(model->observer, model->solid, v->ask->monitors[i], v->motion[i],
+                                 out) ||
+           dea_observer_force_direction(model->observer, model->solid, v->ask->monitors[i],
+                                        v->motion[i], direction);
+  return DEA_OK;
+}
+
+static dea_status get_monitors(struct dea_context *ctx, void *self, double *out)
+{
+  struct dea_model *model = self;
+  const struct dea_model_variant *v = model->variant;
+  struct dea_observation seen;
+  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
+  for (size_t i = 0; i < v->ask->monitor_count; i++) {
+    out[i] = seen.monitor[v->ask->monitors[i]][v->motion[i]];
+  }
+  return DEA_OK;
+}
+
+/* Pressures and forces that controls have moved as the design has them, which they were at rest, or
+ * as they are again. */
+static void load_as_at_rest(const struct dea_model *model, bool at_rest)
+{
+  struct dea_solid *s = model->solid;
+  dea_solid_pressures_set(model, at_rest ? 1 : model->pressure_factor);
+  place_loads(&s->problem);
+  for (size_t i = 0; i < model->layout->body_count; i++) {
+    const struct dea_layout_body *body = &model->layout->bodies[i];
+    const size_t first = 3 * s->problem.bodies[i].node;
+    double own[6];
+    memcpy(own, body->force_N, sizeof body->force_N);
+    memcpy(own + 3, body->moment_N_m, sizeof body->moment_N_m);
+    dea_solid_body_load(model, i, at_rest ? own : model->push[i]);
+    for (size_t k = 0; k < 6; k++) {
+      if ((model->variant->own.controls[i].force >> k) & 1) {
+        s->state.force[first + k] = s->state.force_goal[first + k];
+      }
+    }
+  }
+}
+
+static dea_status variant_point(struct dea_context *ctx, void *self, double voltage_V,
+                                double energy_J, struct dea_load_point *out)
+{
+  struct dea_model *model = self;
+  const struct dea_model_variant *v = model->variant;
+  const struct dea_gradient_film film = film_of(model);
+  double *rest = v->rest; // room: followers of bodies are moved
+  for (size_t i = 0; i < model->solid->problem.dofs; i++) {
+    rest[i] = model->rest[i] + v->shift[i];
+  }
+  model->at.report.energy_J = energy_J;
+  load_as_at_rest(model, true);
+  const size_t loads = model->solid->problem.load_count;
+  model->solid->problem.load_count -= model->indent != NULL ? 1 : 0; // it is not there at rest
+  dea_status status =
+      dea_gradient_rest_energy(model->solid, v->ask, rest, model->rest + model->solid->problem.dofs,
+                               &model->at.rest_energy_J);
+  model->solid->problem.load_count = loads;
+  load_as_at_rest(model, false);
+  bool kept = model->layout->contact_count == 0; // pressures at rest
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    kept = kept && model->layout->pressures[i].encloses != DEA_LIQUID;
+  }
+  model->at.rest_energy_J = kept ? model->at.rest_energy_J : NAN;
+  dea_solid_model_describe(model, voltage_V, out);
+  status = status == DEA_OK ? dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out)
+                            : status;
+  return status == DEA_OK
+             ? DEA_OK
+             : dea_fail(ctx, status, "a changed device cannot be evaluated at %g V", voltage_V);
+}
+
+/* The motion of each monitor that its slope is of. */
+static dea_status find_asked_motions(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_model_variant *v = model->variant;
+  struct dea_observation seen;
+  if (v->ask->monitor_count > 0) {
+    DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
+    for (size_t i = 0; i < v->ask->monitor_count; i++) {
+      v->motion[i] = v->ask->motions != NULL ? v->ask->motions[i]
+                                             : dea_observed_main(seen.monitor[v->ask->monitors[i]]);
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_gradient_request *ask, double *out)
+{
+  struct dea_model_variant *v = model->variant;
+  struct dea_solid *s = model->solid;
+  const struct dea_gradient_owner owner = {.solid = s,
+                                           .outcome = &model->at.outcome,
+                                           .model = model,
+                                           .voltage_V = model->at.voltage_V,
+                                           .slope = slope,
+                                           .monitor_slope = monitor_slope,
+                                           .monitors = get_monitors,
+                                           .enter = enter,
+                                           .hold = model->indent != NULL ? hold_tip : NULL,
+                                           .leave = leave,
+                                           .point = variant_point};
+  const struct dea_gradient_film film = film_of(model);
+  dea_gradient_places_find(&film, &v->places);
+  memcpy(v->force, s->state.force, s->problem.dofs * sizeof *v->force);
+  memcpy(v->own_V, s->state.own_V, (s->problem.channel_count + 1) * sizeof *v->own_V);
+  v->problem = s->problem;
+  v->ask = ask;
+  v->own = *model;
+  DEA_TRY(ctx, find_asked_motions(ctx, model));
+  return DEA_CHAIN(ctx, dea_gradient_find(ctx, &owner, ask, out));
+}
+
+dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *model,
+                                    const struct dea_gradient_request *ask, double *out)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  const struct dea_solid_problem *p = &model->solid->problem;
+  dea_solver_state_end_history(ctx, &model->at);
+  if (dea_charge_is_held(model->solid)) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "gradients at a given charge are not supported");
+  }
+  DEA_TRY(ctx, dea_gradient_asks_mode(ask) ? dea_solid_check_densities(ctx, model) : DEA_OK);
+  struct dea_model_variant *v = model->variant = dea_arena_alloc(&memory, 1, sizeof *v);
+  double *values = dea_arena_alloc(&memory, 4 * p->dofs, sizeof *values);
+  double *own_V = dea_arena_alloc(&memory, p->channel_count + 1, sizeof *own_V);
+  enum dea_observed *motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *motion);
+  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&memory));
+  if (status == DEA_OK) {
+    v->force = values;
+    v->rest = values + p->dofs;
+    v->u = values + 2 * p->dofs;
+    v->shift = values + 3 * p->dofs;
+    v->own_V = own_V;
+    v->motion = motion;
+    dea_solid_liquids_stiffen(model, true);
+    status = find_gradient(ctx, model, ask, out);
+    dea_solid_liquids_stiffen(model, false);
+  }
+  model->variant = NULL;
+  dea_arena_free(&memory);
+  return DEA_CHAIN(ctx, status);
+}
