@@ -1,11 +1,11 @@
 /* K = L L^T by fronts (docs/theory/fronts.md). A front is a dense matrix: the columns of K that are
- * eliminated in it, its own, and the rows where L has entries in these; below them is what they
- * leave for the rows beyond, its update, which goes into the front of the first of those rows.
+ * eliminated in it, its pivots, and the rows where L has entries in these; below them is what they
+ * leave for the remaining rows, its update, which goes into the front of the first of those rows.
  *
- *   own      columns that a front eliminates         1
- *   rows     of it, its own ones first               1
- *   panel    [own][rows], by columns: K, then L      as K
- *   update   [rows - own]^2, its lower triangle      as K
+ *   pivots   columns that a front eliminates          1
+ *   rows     of it, its pivots first                  1
+ *   panel    [pivots][rows], by columns: K, then L    as K
+ *   update   [rows - pivots]^2, its lower triangle    as K
  */
 #include "model/solid/assembly/fronts.h"
 
@@ -28,10 +28,10 @@ extern void dtrsv_(const char *uplo, const char *trans, const char *diag, const 
                    const double *A, const PetscBLASInt *lda, double *x, const PetscBLASInt *incx);
 
 struct front {
-  PetscBLASInt own, rows;
-  int first;    // unknown that is its first own one, in the order of elimination
-  int *row;     // [rows - own] unknowns beyond its own, rising
-  int *into;    // [rows - own] rows of the parent that they are
+  PetscBLASInt pivots, rows;
+  int first;    // unknown that is its first pivot, in the order of elimination
+  int *row;     // [rows - pivots] unknowns below its pivots, rising
+  int *into;    // [rows - pivots] rows of the parent that they are
   int parent;   // -1: none
   int side;     // stack of its update: not that of its parent
   size_t panel; // where it begins in L
@@ -40,9 +40,9 @@ struct front {
 
 /* A block of K, PER x PER, by columns. */
 struct block {
-  size_t from; // number of it in K
-  size_t to;   // in L
-  bool across; // transposed
+  size_t from;     // number of it in K
+  size_t to;       // in L
+  bool transposed; // transposed
 };
 
 struct dea_fronts {
@@ -54,13 +54,13 @@ struct dea_fronts {
   size_t count;
   struct block *blocks; // [fronts[count].block]
   double *L;
-  size_t entries;     // of L
-  double *update;     // of the present front, on its stack
-  double *stack[2];   // updates that wait for their parents
-  int *waiting;       // [count] fronts that these are of
-  double *oo;         // [own]^2 of a front, as it was before its elimination
-  bool *below;        // [PER nodes] rows where D has -1
-  double *x, *beyond; // [PER nodes] and the rows of the largest front
+  size_t entries;        // of L
+  double *update;        // of the present front, on its stack
+  double *stack[2];      // updates that wait for their parents
+  int *waiting;          // [count] fronts that these are of
+  double *oo;            // [pivots]^2 of a front, as it was before its elimination
+  bool *below;           // [PER nodes] rows where D has -1
+  double *x, *remaining; // [PER nodes] and the rows of the largest front
 };
 
 // Analysis ---------------------------------------------------------------------------------------
@@ -258,19 +258,19 @@ static dea_status build_fronts(struct dea_context *ctx, struct analysis *a, stru
     for (end = k + 1; end < a->nodes && a->of[end] == a->of[k];) {
       end++;
     }
-    int beyond = a->row_count[end - 1];
+    int remaining = a->row_count[end - 1];
     front->first = PER * k;
-    front->own = PER * (end - k);
-    front->rows = front->own + PER * beyond;
-    front->parent = beyond > 0 ? a->of[a->rows[end - 1][0]] : -1;
+    front->pivots = PER * (end - k);
+    front->rows = front->pivots + PER * remaining;
+    front->parent = remaining > 0 ? a->of[a->rows[end - 1][0]] : -1;
     front->panel = f->entries;
-    front->row = dea_arena_alloc(&f->memory, (size_t)(PER * beyond), sizeof *front->row);
-    front->into = dea_arena_alloc(&f->memory, (size_t)(PER * beyond), sizeof *front->into);
+    front->row = dea_arena_alloc(&f->memory, (size_t)(PER * remaining), sizeof *front->row);
+    front->into = dea_arena_alloc(&f->memory, (size_t)(PER * remaining), sizeof *front->into);
     DEA_TRY(ctx, dea_arena_status(&f->memory));
-    for (int i = 0; i < PER * beyond; i++) {
+    for (int i = 0; i < PER * remaining; i++) {
       front->row[i] = PER * a->rows[end - 1][i / PER] + i % PER;
     }
-    f->entries += (size_t)front->own * (size_t)front->rows;
+    f->entries += (size_t)front->pivots * (size_t)front->rows;
   }
   return DEA_OK;
 }
@@ -278,11 +278,11 @@ static dea_status build_fronts(struct dea_context *ctx, struct analysis *a, stru
 /* Row of each unknown in a front, into at [PER nodes]. */
 static void find_front_rows(const struct front *front, int *at)
 {
-  for (int i = 0; i < front->own; i++) {
+  for (int i = 0; i < front->pivots; i++) {
     at[front->first + i] = i;
   }
-  for (int i = 0; i < front->rows - front->own; i++) {
-    at[front->row[i]] = front->own + i;
+  for (int i = 0; i < front->rows - front->pivots; i++) {
+    at[front->row[i]] = front->pivots + i;
   }
 }
 
@@ -294,7 +294,7 @@ static void link_fronts(struct dea_fronts *f, int *at)
     if (child->parent >= 0) {
       find_front_rows(&f->fronts[child->parent], at);
     }
-    for (int i = 0; i < child->rows - child->own; i++) {
+    for (int i = 0; i < child->rows - child->pivots; i++) {
       child->into[i] = at[child->row[i]];
     }
   }
@@ -339,14 +339,14 @@ static void place_blocks(const struct analysis *a, struct dea_fronts *f, int *at
 
 static size_t update_size(const struct front *front)
 {
-  return (size_t)(front->rows - front->own) * (size_t)(front->rows - front->own);
+  return (size_t)(front->rows - front->pivots) * (size_t)(front->rows - front->pivots);
 }
 
 /* Memory of the factor; the largest that waits at a time. A front's update is made on one stack
  * while those of its children, the last on the other, are taken from there. */
 static dea_status reserve(struct dea_context *ctx, struct dea_fronts *f)
 {
-  size_t rows = 0, own = 0, depth[2] = {0, 0}, deepest[2] = {0, 0}, waiting = 0;
+  size_t rows = 0, pivots = 0, depth[2] = {0, 0}, deepest[2] = {0, 0}, waiting = 0;
   f->waiting = dea_arena_alloc(&f->memory, f->count, sizeof *f->waiting);
   DEA_TRY(ctx, dea_arena_status(&f->memory));
   for (size_t n = f->count; n-- > 0;) {
@@ -355,22 +355,22 @@ static dea_status reserve(struct dea_context *ctx, struct dea_fronts *f)
   }
   for (size_t n = 0; n < f->count; n++) {
     const struct front *front = &f->fronts[n];
-    size_t *of = &depth[front->side], *most = &deepest[front->side];
+    size_t *of = &depth[front->side], *max_negative = &deepest[front->side];
     *of += update_size(front);
-    *most = *of > *most ? *of : *most;
+    *max_negative = *of > *max_negative ? *of : *max_negative;
     for (; waiting > 0 && f->fronts[f->waiting[waiting - 1]].parent == (int)n; waiting--) {
       depth[!front->side] -= update_size(&f->fronts[f->waiting[waiting - 1]]);
     }
     f->waiting[waiting++] = (int)n;
     rows = (size_t)front->rows > rows ? (size_t)front->rows : rows;
-    own = (size_t)front->own > own ? (size_t)front->own : own;
+    pivots = (size_t)front->pivots > pivots ? (size_t)front->pivots : pivots;
   }
   f->L = dea_arena_alloc(&f->memory, f->entries, sizeof *f->L);
   f->stack[0] = dea_arena_alloc(&f->memory, deepest[0], sizeof *f->stack[0]);
   f->stack[1] = dea_arena_alloc(&f->memory, deepest[1], sizeof *f->stack[1]);
   f->x = dea_arena_alloc(&f->memory, PER * (size_t)f->nodes, sizeof *f->x);
-  f->beyond = dea_arena_alloc(&f->memory, rows, sizeof *f->beyond);
-  f->oo = dea_arena_alloc(&f->memory, own * own, sizeof *f->oo);
+  f->remaining = dea_arena_alloc(&f->memory, rows, sizeof *f->remaining);
+  f->oo = dea_arena_alloc(&f->memory, pivots * pivots, sizeof *f->oo);
   f->below = dea_arena_alloc(&f->memory, PER * (size_t)f->nodes, sizeof *f->below);
   return DEA_CHAIN(ctx, dea_arena_status(&f->memory));
 }
@@ -457,17 +457,17 @@ static void fill_panel(struct dea_fronts *f, const struct front *front, const do
 {
   const size_t rows = (size_t)front->rows;
   double *panel = f->L + front->panel;
-  memset(panel, 0, rows * (size_t)front->own * sizeof *panel);
+  memset(panel, 0, rows * (size_t)front->pivots * sizeof *panel);
   for (const struct block *b = f->blocks + front[0].block; b < f->blocks + front[1].block; b++) {
     const double *from = K + PER * PER * b->from;
     for (size_t c = 0; c < PER; c++) {
       double *to = f->L + b->to + c * rows;
       for (size_t r = 0; r < PER; r++) {
-        to[r] = b->across ? from[c + PER * r] : from[r + PER * c];
+        to[r] = b->transposed ? from[c + PER * r] : from[r + PER * c];
       }
     }
   }
-  for (size_t i = 0; i < (size_t)front->own; i++) {
+  for (size_t i = 0; i < (size_t)front->pivots; i++) {
     f->x[(size_t)front->first + i] = panel[i * (rows + 1)];
   }
 }
@@ -476,13 +476,13 @@ static void fill_panel(struct dea_fronts *f, const struct front *front, const do
 static void add_update(struct dea_fronts *f, const struct front *front, const struct front *child,
                        const double *update)
 {
-  const size_t count = (size_t)(child->rows - child->own), own = (size_t)front->own;
-  const size_t rows = (size_t)front->rows, beyond = rows - own;
+  const size_t count = (size_t)(child->rows - child->pivots), pivots = (size_t)front->pivots;
+  const size_t rows = (size_t)front->rows, remaining = rows - pivots;
   const int *into = child->into;
   for (size_t c = 0; c < count; c++, update += count) {
     const size_t column = (size_t)into[c];
-    double *to = column < own ? f->L + front->panel + column * rows
-                              : f->update + (column - own) * beyond - own;
+    double *to = column < pivots ? f->L + front->panel + column * rows
+                                 : f->update + (column - pivots) * remaining - pivots;
     for (size_t r = c; r < count; r++) {
       to[into[r]] += update[r];
     }
@@ -493,9 +493,9 @@ static void add_update(struct dea_fronts *f, const struct front *front, const st
 static void pop_updates(struct dea_fronts *f, size_t number, size_t *waiting, size_t *depth)
 {
   const struct front *front = &f->fronts[number];
-  const size_t beyond = (size_t)(front->rows - front->own);
-  for (size_t c = 0; c < beyond; c++) {
-    memset(f->update + c * beyond + c, 0, (beyond - c) * sizeof *f->update);
+  const size_t remaining = (size_t)(front->rows - front->pivots);
+  for (size_t c = 0; c < remaining; c++) {
+    memset(f->update + c * remaining + c, 0, (remaining - c) * sizeof *f->update);
   }
   for (; *waiting > 0 && f->fronts[f->waiting[*waiting - 1]].parent == (int)number; --*waiting) {
     const struct front *child = &f->fronts[f->waiting[*waiting - 1]];
@@ -507,11 +507,11 @@ static void pop_updates(struct dea_fronts *f, size_t number, size_t *waiting, si
 /* F_oo of the panel into f->oo, or back. */
 static void copy_own(struct dea_fronts *f, const struct front *front, bool back)
 {
-  const size_t own = (size_t)front->own, rows = (size_t)front->rows;
+  const size_t pivots = (size_t)front->pivots, rows = (size_t)front->rows;
   double *panel = f->L + front->panel;
-  for (size_t c = 0; c < own; c++) {
-    double *here = panel + c * rows + c, *kept = f->oo + c * own + c;
-    memcpy(back ? here : kept, back ? kept : here, (own - c) * sizeof *here);
+  for (size_t c = 0; c < pivots; c++) {
+    double *here = panel + c * rows + c, *kept = f->oo + c * pivots + c;
+    memcpy(back ? here : kept, back ? kept : here, (pivots - c) * sizeof *here);
   }
 }
 
@@ -519,20 +519,20 @@ static void copy_own(struct dea_fronts *f, const struct front *front, bool back)
  * than rounding. */
 static bool eliminate_own(struct dea_fronts *f, const struct front *front, bool *below)
 {
-  const size_t own = (size_t)front->own, rows = (size_t)front->rows;
+  const size_t pivots = (size_t)front->pivots, rows = (size_t)front->rows;
   double *panel = f->L + front->panel;
-  for (size_t j = 0; j < own; j++) {
+  for (size_t j = 0; j < pivots; j++) {
     double *column = panel + j * rows, pivot = column[j];
     below[j] = pivot < 0;
     if (!(fabs(pivot) > least * fabs(f->x[(size_t)front->first + j]))) {
       return false;
     }
-    for (size_t i = j; i < own; i++) {
+    for (size_t i = j; i < pivots; i++) {
       column[i] /= below[j] ? -sqrt(-pivot) : sqrt(pivot);
     }
-    for (size_t c = j + 1; c < own; c++) {
+    for (size_t c = j + 1; c < pivots; c++) {
       double *to = panel + c * rows, share = below[j] ? -column[c] : column[c];
-      for (size_t i = c; i < own; i++) {
+      for (size_t i = c; i < pivots; i++) {
         to[i] -= share * column[i];
       }
     }
@@ -545,7 +545,7 @@ static bool are_above(const struct dea_fronts *f, const struct front *front)
 {
   const double *panel = f->L + front->panel;
   bool above = true;
-  for (size_t i = 0; i < (size_t)front->own && above; i++) {
+  for (size_t i = 0; i < (size_t)front->pivots && above; i++) {
     const double pivot = panel[i * ((size_t)front->rows + 1)];
     above = pivot * pivot > least * f->x[(size_t)front->first + i];
   }
@@ -556,14 +556,14 @@ static bool are_above(const struct dea_fronts *f, const struct front *front)
  * of this front; -1: one is hardly more than rounding, and there is nothing. */
 static void eliminate(struct dea_fronts *f, const struct front *front, int *negative)
 {
-  const PetscBLASInt beyond = front->rows - front->own;
-  double *panel = f->L + front->panel, *L_bo = panel + front->own;
+  const PetscBLASInt remaining = front->rows - front->pivots;
+  double *panel = f->L + front->panel, *L_bo = panel + front->pivots;
   bool *below = f->below + front->first;
   PetscBLASInt failed = 0;
   *negative = 0;
-  memset(below, 0, (size_t)front->own * sizeof *below);
+  memset(below, 0, (size_t)front->pivots * sizeof *below);
   copy_own(f, front, false);
-  LAPACKpotrf_("L", &front->own, panel, &front->rows, &failed);
+  LAPACKpotrf_("L", &front->pivots, panel, &front->rows, &failed);
   if (failed != 0) {
     copy_own(f, front, true);
   }
@@ -571,29 +571,30 @@ static void eliminate(struct dea_fronts *f, const struct front *front, int *nega
     *negative = -1;
     return;
   }
-  for (size_t c = 0; c < (size_t)front->own; c++) {
+  for (size_t c = 0; c < (size_t)front->pivots; c++) {
     *negative += below[c] ? 1 : 0;
   }
-  if (beyond == 0) {
+  if (remaining == 0) {
     return;
   }
-  BLAStrsm_("R", "L", "T", "N", &beyond, &front->own, &one, panel, &front->rows, L_bo,
+  BLAStrsm_("R", "L", "T", "N", &remaining, &front->pivots, &one, panel, &front->rows, L_bo,
             &front->rows);
-  BLASsyrk_("L", "N", &beyond, &front->own, &minus, L_bo, &front->rows, &one, f->update, &beyond);
-  for (size_t c = 0; c<(size_t)front->own && * negative> 0; c++) {
+  BLASsyrk_("L", "N", &remaining, &front->pivots, &minus, L_bo, &front->rows, &one, f->update,
+            &remaining);
+  for (size_t c = 0; c<(size_t)front->pivots && * negative> 0; c++) {
     if (below[c]) { // where D has -1, what was taken off is added
-      BLASsyrk_("L", "N", &beyond, &unit, &two, L_bo + c * (size_t)front->rows, &front->rows, &one,
-                f->update, &beyond);
+      BLASsyrk_("L", "N", &remaining, &unit, &two, L_bo + c * (size_t)front->rows, &front->rows,
+                &one, f->update, &remaining);
     }
   }
 }
 
 /* As dea_fronts_factor. */
-static int factorise(struct dea_fronts *f, const double *K, int most)
+static int factorise(struct dea_fronts *f, const double *K, int max_negative)
 {
   size_t waiting = 0, depth[2] = {0, 0};
   int negative = 0;
-  for (size_t n = 0; n < f->count && negative <= most; n++) {
+  for (size_t n = 0; n < f->count && negative <= max_negative; n++) {
     int of_front;
     const struct front *front = &f->fronts[n];
     f->update = f->stack[front->side] + depth[front->side];
@@ -610,41 +611,41 @@ static int factorise(struct dea_fronts *f, const double *K, int most)
   return negative;
 }
 
-dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts, Mat K, int most,
-                             int *negative)
+dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts, Mat K,
+                             int max_negative, int *negative)
 {
   PetscScalar *values;
   DEA_PETSC(ctx, MatSeqSBAIJGetArray(K, &values));
-  *negative = factorise(fronts, values, most);
+  *negative = factorise(fronts, values, max_negative);
   DEA_PETSC(ctx, MatSeqSBAIJRestoreArray(K, &values));
   return DEA_OK;
 }
 
 // Solution ---------------------------------------------------------------------------------------
 
-/* D times the own rows of x. */
+/* D times the pivot rows of x. */
 static void turn_signs(struct dea_fronts *f, const struct front *front)
 {
-  const size_t end = (size_t)front->first + (size_t)front->own;
+  const size_t end = (size_t)front->first + (size_t)front->pivots;
   for (size_t i = (size_t)front->first; i < end; i++) {
     f->x[i] = f->below[i] ? -f->x[i] : f->x[i];
   }
 }
 
-/* x = D L^-1 x. Below a front's own rows the panel has L D. */
+/* x = D L^-1 x. Below a front's pivot rows the panel has L D. */
 static void solve_down(struct dea_fronts *f)
 {
   for (const struct front *front = f->fronts; front < f->fronts + f->count; front++) {
-    const PetscBLASInt beyond = front->rows - front->own;
+    const PetscBLASInt remaining = front->rows - front->pivots;
     const double *panel = f->L + front->panel;
-    dtrsv_("L", "N", "N", &front->own, panel, &front->rows, f->x + front->first, &unit);
+    dtrsv_("L", "N", "N", &front->pivots, panel, &front->rows, f->x + front->first, &unit);
     turn_signs(f, front);
-    if (beyond > 0) {
-      BLASgemv_("N", &beyond, &front->own, &one, panel + front->own, &front->rows,
-                f->x + front->first, &unit, &zero, f->beyond, &unit);
+    if (remaining > 0) {
+      BLASgemv_("N", &remaining, &front->pivots, &one, panel + front->pivots, &front->rows,
+                f->x + front->first, &unit, &zero, f->remaining, &unit);
     }
-    for (PetscBLASInt i = 0; i < beyond; i++) {
-      f->x[front->row[i]] -= f->beyond[i];
+    for (PetscBLASInt i = 0; i < remaining; i++) {
+      f->x[front->row[i]] -= f->remaining[i];
     }
   }
 }
@@ -653,18 +654,18 @@ static void solve_down(struct dea_fronts *f)
 static void solve_up(struct dea_fronts *f)
 {
   for (const struct front *front = f->fronts + f->count; front-- > f->fronts;) {
-    const PetscBLASInt beyond = front->rows - front->own;
+    const PetscBLASInt remaining = front->rows - front->pivots;
     const double *panel = f->L + front->panel;
-    for (PetscBLASInt i = 0; i < beyond; i++) {
-      f->beyond[i] = f->x[front->row[i]];
+    for (PetscBLASInt i = 0; i < remaining; i++) {
+      f->remaining[i] = f->x[front->row[i]];
     }
     turn_signs(f, front);
-    if (beyond > 0) {
-      BLASgemv_("T", &beyond, &front->own, &minus, panel + front->own, &front->rows, f->beyond,
-                &unit, &one, f->x + front->first, &unit);
+    if (remaining > 0) {
+      BLASgemv_("T", &remaining, &front->pivots, &minus, panel + front->pivots, &front->rows,
+                f->remaining, &unit, &one, f->x + front->first, &unit);
     }
     turn_signs(f, front);
-    dtrsv_("L", "T", "N", &front->own, panel, &front->rows, f->x + front->first, &unit);
+    dtrsv_("L", "T", "N", &front->pivots, panel, &front->rows, f->x + front->first, &unit);
   }
 }
 
