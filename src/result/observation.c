@@ -19,8 +19,7 @@
   }
 #define FORCE(axis)                                                                                \
   {                                                                                                \
-    "force_" axis "_N", "N", "mN", 1e3, "force " axis,                                             \
-        "on a body, of what holds or moves it; on what a contact touches"                          \
+    "force_" axis "_N", "N", "mN", 1e3, "force " axis, "on a body, of what holds or moves it"      \
   }
 #define MOMENT(axis)                                                                               \
   {                                                                                                \
@@ -47,7 +46,8 @@ const struct dea_column dea_observed_columns[DEA_OBSERVED_COUNT] = {
     MOMENT("z"),
     {"pressure_Pa", "Pa", "kPa", 1e-3, "pressure", "on a face, into its ply"},
     {"volume_m3", "m3", "ml", 1e6, "volume", "that a face with a pressure has swept"},
-    {"contact_area_m2", "m2", "mm2", 1e6, "contact area",
+    {"contact_force_N", "N", "mN", 1e3, "force", "of a face on what it touches"},
+    {"contact_area_m2", "m2", "mm2", 1e6, "area",
      "of a flat face where it touches, to the size of an element"},
 };
 
@@ -71,7 +71,7 @@ enum dea_observed dea_observed_main(const double values[DEA_OBSERVED_COUNT])
     return DEA_OBSERVED_VOLUME;
   }
   if (!isnan(values[DEA_OBSERVED_CONTACT_AREA])) {
-    return DEA_OBSERVED_FORCE_Z;
+    return DEA_OBSERVED_CONTACT_FORCE;
   }
   if (!isnan(values[DEA_OBSERVED_AREA_STRETCH])) {
     return DEA_OBSERVED_AREA_STRETCH;
@@ -97,8 +97,7 @@ bool dea_observed_has(enum dea_layout_monitor_kind kind, enum dea_observed obser
   case DEA_MONITOR_VOLUME:
     return observed == DEA_OBSERVED_PRESSURE || observed == DEA_OBSERVED_VOLUME;
   case DEA_MONITOR_CONTACT:
-    return observed == DEA_OBSERVED_CONTACT_AREA ||
-           (observed >= DEA_OBSERVED_FORCE_X && observed <= DEA_OBSERVED_FORCE_Z);
+    return observed >= DEA_OBSERVED_CONTACT_FORCE;
   default:
     return observed <= DEA_OBSERVED_TURN_Z ||
            (observed >= DEA_OBSERVED_FORCE_X && observed <= DEA_OBSERVED_MOMENT_Z);
@@ -352,7 +351,7 @@ double dea_curve_change(const struct dea_curve *curve, int column)
 }
 
 /* What a monitor shows of one kind is one headline. */
-enum headline { NO_HEADLINE, BY_DISPLACEMENT, BY_TURN, BY_STRETCH };
+enum headline { NO_HEADLINE, BY_DISPLACEMENT, BY_TURN, BY_STRETCH, BY_FORCE };
 
 static enum headline headline_of(const struct dea_column *column, double *least)
 {
@@ -365,7 +364,10 @@ static enum headline headline_of(const struct dea_column *column, double *least)
   if (k >= DEA_OBSERVED_TURN_X && k <= DEA_OBSERVED_TURN_Z) {
     return BY_TURN;
   }
-  *least = 1e-9;
+  *least = 1e-9; // [N], stretch
+  if (k == DEA_OBSERVED_CONTACT_FORCE) {
+    return BY_FORCE;
+  }
   return k == DEA_OBSERVED_STRETCH || k == DEA_OBSERVED_AREA_STRETCH ? BY_STRETCH : NO_HEADLINE;
 }
 

@@ -23,7 +23,7 @@ enum dea_observed {
   DEA_OBSERVED_STRETCH_X,
   DEA_OBSERVED_STRETCH_Y,
   DEA_OBSERVED_AREA_STRETCH,
-  DEA_OBSERVED_FORCE_X, // on a body, of what holds or moves it; on what a contact touches
+  DEA_OBSERVED_FORCE_X, // on a body, of what holds or moves it
   DEA_OBSERVED_FORCE_Y,
   DEA_OBSERVED_FORCE_Z,
   DEA_OBSERVED_MOMENT_X, // about its centre as it stands
@@ -31,6 +31,7 @@ enum dea_observed {
   DEA_OBSERVED_MOMENT_Z,
   DEA_OBSERVED_PRESSURE, // on a face, and the volume that it has swept
   DEA_OBSERVED_VOLUME,
+  DEA_OBSERVED_CONTACT_FORCE, // of a face on what it touches, and the area that touches
   DEA_OBSERVED_CONTACT_AREA,
   DEA_OBSERVED_COUNT
 };

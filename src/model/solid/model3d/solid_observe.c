@@ -464,8 +464,10 @@ static void observe_contact(const struct dea_observer *o, size_t contact, const 
                             double *values)
 {
   if (o->contacts[contact] != NULL) {
-    dea_contact_force(o->contacts[contact], u, values + DEA_OBSERVED_FORCE_X);
-    sum_up_forces(o->mesh, 3, values + DEA_OBSERVED_FORCE_X);
+    double force_N[3];
+    dea_contact_force(o->contacts[contact], u, force_N);
+    sum_up_forces(o->mesh, 3, force_N);
+    values[DEA_OBSERVED_CONTACT_FORCE] = length_of(force_N);
     values[DEA_OBSERVED_CONTACT_AREA] =
         (double)dea_layout_sector_copies(&o->mesh->sector) * dea_contact_area(o->contacts[contact]);
   }
