@@ -207,69 +207,12 @@ dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type
                               : lacks(ctx, type, "indenter");
 }
 
-dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_control *control, double value,
-                          struct dea_load_point *out)
-{
-  return type->move != NULL ? type->move(ctx, model, control, value, out)
-                            : lacks(ctx, type, "bodies or pressures that are moved");
-}
-
-dea_status dea_model_compliance(struct dea_context *ctx, const struct dea_model_type *type,
-                                struct dea_model *model, const struct dea_control *coordinate,
-                                int with, struct dea_compliance *out)
-{
-  return type->compliance != NULL ? type->compliance(ctx, model, coordinate, with, out)
-                                  : lacks(ctx, type, "forces along a coordinate");
-}
-
-dea_status dea_model_soften(struct dea_context *ctx, const struct dea_model_type *type,
-                            struct dea_model *model, size_t count, double *stiffness_N_per_m4)
-{
-  return type->soften != NULL ? type->soften(ctx, model, count, stiffness_N_per_m4)
-                              : lacks(ctx, type, "states beside one");
-}
-
-dea_status dea_model_push(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_push *push,
-                          struct dea_load_point *out, bool *found)
-{
-  return type->push != NULL ? type->push(ctx, model, push, out, found)
-                            : lacks(ctx, type, "states beside one");
-}
-
-dea_status dea_model_transfer(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, const struct dea_model *from,
-                              struct dea_load_point *out, bool *found)
-{
-  return type->transfer != NULL ? type->transfer(ctx, model, from, out, found)
-                                : lacks(ctx, type, "states of another mesh");
-}
-
-dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
-                          const struct dea_model *model, double voltage_V, double height_m,
-                          double *force_N)
-{
-  return type->hold != NULL ? type->hold(ctx, model, voltage_V, height_m, force_N)
-                            : lacks(ctx, type, "load line");
-}
-
 dea_status dea_model_modes(struct dea_context *ctx, const struct dea_model_type *type,
                            struct dea_model *model, const struct dea_load_point *at, size_t count,
                            struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
   return type->modes != NULL ? type->modes(ctx, model, at, count, points, shapes)
                              : lacks(ctx, type, "vibrations");
-}
-
-dea_status dea_model_respond(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, const struct dea_load_point *at,
-                             const struct dea_ac_excitation *excitation, const double *frequency_Hz,
-                             size_t count, struct dea_load_point *points)
-{
-  return type->respond != NULL
-             ? type->respond(ctx, model, at, excitation, frequency_Hz, count, points)
-             : lacks(ctx, type, "vibrations");
 }
 
 dea_status dea_model_fields(struct dea_context *ctx, const struct dea_model_type *type,

@@ -377,30 +377,9 @@ dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_typ
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_probe *tip, double depth_m,
                             struct dea_load_point *out);
-dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_control *control, double value,
-                          struct dea_load_point *out);
-dea_status dea_model_compliance(struct dea_context *ctx, const struct dea_model_type *type,
-                                struct dea_model *model, const struct dea_control *coordinate,
-                                int with, struct dea_compliance *out);
-dea_status dea_model_soften(struct dea_context *ctx, const struct dea_model_type *type,
-                            struct dea_model *model, size_t count, double *stiffness_N_per_m4);
-dea_status dea_model_push(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_push *push,
-                          struct dea_load_point *out, bool *found);
-dea_status dea_model_transfer(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, const struct dea_model *from,
-                              struct dea_load_point *out, bool *found);
-dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,
-                          const struct dea_model *model, double voltage_V, double height_m,
-                          double *force_N);
 dea_status dea_model_modes(struct dea_context *ctx, const struct dea_model_type *type,
                            struct dea_model *model, const struct dea_load_point *at, size_t count,
                            struct dea_load_point *points, struct dea_field_mesh **shapes);
-dea_status dea_model_respond(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, const struct dea_load_point *at,
-                             const struct dea_ac_excitation *excitation, const double *frequency_Hz,
-                             size_t count, struct dea_load_point *points);
 dea_status dea_model_fields(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, enum dea_fields_part part,
                             struct dea_field_mesh **out);

@@ -135,52 +135,52 @@ static dea_status solve(struct dea_context *ctx, struct dea_model *model, double
 static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                          const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(
-                            dea_model_indent(ctx, model->type, model->inner, probe, depth_m, out)));
+  return DEA_CHAIN(ctx,
+                   DEA_SOLID_IN_TURN(model->type->indent(ctx, model->inner, probe, depth_m, out)));
 }
 
 static dea_status move(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_control *control, double value, struct dea_load_point *out)
 {
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(dea_model_move(ctx, model->type, model->inner, control, value, out)));
+  return DEA_CHAIN(ctx,
+                   DEA_SOLID_IN_TURN(model->type->move(ctx, model->inner, control, value, out)));
 }
 
 static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
                              const struct dea_control *coordinate, int with,
                              struct dea_compliance *out)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_compliance(ctx, model->type, model->inner,
-                                                               coordinate, with, out)));
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(model->type->compliance(ctx, model->inner, coordinate, with, out)));
 }
 
 static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
                             const struct dea_path_options *options, dea_point_sink points,
                             dea_event_sink events, void *user)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_path(ctx, model->type, model->inner, options,
-                                                         points, events, user)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->long_path(ctx, model->inner, options, points,
+                                                                 events, user)));
 }
 
 static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
                          double *stiffness_N_per_m4)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_soften(ctx, model->type, model->inner, count,
-                                                           stiffness_N_per_m4)));
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(model->type->soften(ctx, model->inner, count, stiffness_N_per_m4)));
 }
 
 static dea_status push(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_push *perturbation, struct dea_load_point *out, bool *found)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_push(ctx, model->type, model->inner,
-                                                         perturbation, out, found)));
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(model->type->push(ctx, model->inner, perturbation, out, found)));
 }
 
 static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
                            const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_transfer(ctx, model->type, model->inner,
-                                                             from->inner, out, found)));
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(model->type->transfer(ctx, model->inner, from->inner, out, found)));
 }
 
 static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
@@ -192,7 +192,7 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_observe(ctx, model->type, model->inner, out)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->observe(ctx, model->inner, out)));
 }
 
 static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
@@ -207,15 +207,15 @@ static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t
 
 static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_profile(ctx, model->type, model->inner, out)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->profile(ctx, model->inner, out)));
 }
 
 static dea_status modes(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_load_point *at, size_t count,
                         struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_modes(ctx, model->type, model->inner, at, count,
-                                                          points, shapes)));
+  return DEA_CHAIN(
+      ctx, DEA_SOLID_IN_TURN(model->type->modes(ctx, model->inner, at, count, points, shapes)));
 }
 
 static dea_status respond(struct dea_context *ctx, struct dea_model *model,
@@ -223,9 +223,8 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_ac_excitation *excitation, const double *frequency_Hz,
                           size_t count, struct dea_load_point *points)
 {
-  return DEA_CHAIN(ctx,
-                   DEA_SOLID_IN_TURN(dea_model_respond(ctx, model->type, model->inner, at,
-                                                       excitation, frequency_Hz, count, points)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->respond(ctx, model->inner, at, excitation,
+                                                               frequency_Hz, count, points)));
 }
 
 static const double *answers(const struct dea_model *model)
@@ -236,34 +235,32 @@ static const double *answers(const struct dea_model *model)
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
-  return DEA_CHAIN(ctx,
-                   DEA_SOLID_IN_TURN(dea_model_fields(ctx, model->type, model->inner, part, out)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->fields(ctx, model->inner, part, out)));
 }
 
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_save(ctx, model->type, model->inner, out)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->save(ctx, model->inner, out)));
 }
 
 static dea_status load(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_state *state)
 {
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(dea_model_load(ctx, model->type, model->inner, state)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->load(ctx, model->inner, state)));
 }
 
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *options, struct dea_load_point *out)
 {
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(dea_model_begin(ctx, model->type, model->inner, options, out)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->begin(ctx, model->inner, options, out)));
 }
 
 static dea_status advance(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_time_step *step, struct dea_load_point *out,
                           double *error)
 {
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(dea_model_advance(ctx, model->type, model->inner, step, out, error)));
+  return DEA_CHAIN(ctx,
+                   DEA_SOLID_IN_TURN(model->type->advance(ctx, model->inner, step, out, error)));
 }
 
 static void accept(struct dea_model *model)

@@ -133,7 +133,7 @@ static dea_status solve_frequencies(struct dea_context *ctx, const struct dea_mo
     frequency_Hz[i] = from * pow(to / from, (double)i / (double)(count - 1));
   }
   if (status == DEA_OK) {
-    status = dea_model_respond(ctx, type, model, at, &excitation, frequency_Hz, count, points);
+    status = type->respond(ctx, model, at, &excitation, frequency_Hz, count, points);
   }
   const double *answers = status == DEA_OK && type->answers != NULL ? type->answers(model) : NULL;
   if (status == DEA_OK) {

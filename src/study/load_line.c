@@ -28,7 +28,7 @@ static dea_status add_forces(struct dea_context *ctx, const struct dea_model_typ
 {
   for (int i = 0; i < LINE_POINTS; i++) {
     double height_m = free_m * i / (LINE_POINTS - 1) + 0.0, force_N = 0;
-    const dea_status status = dea_model_hold(ctx, type, model, voltage_V, height_m, &force_N);
+    const dea_status status = type->hold(ctx, model, voltage_V, height_m, &force_N);
     if (is_fatal(status)) {
       return status;
     }

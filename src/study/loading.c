@@ -426,7 +426,7 @@ static dea_status move_to(struct dea_context *ctx, struct loading *l, double val
   if (l->is_timed) {
     return move_in_time(ctx, l, from, to, at);
   }
-  DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, to, at));
+  DEA_TRY(ctx, l->type->move(ctx, l->model, &l->control, to, at));
   if (!isnan(l->settings->duration_s.si)) {
     struct dea_load_point start;
     l->is_timed = true;
@@ -483,7 +483,7 @@ static dea_status block(struct dea_context *ctx, struct loading *l)
   for (int i = 0; i < 2; i++) {
     double v[VALUES];
     if (i == 0) {
-      DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, 0, &at));
+      DEA_TRY(ctx, l->type->move(ctx, l->model, &l->control, 0, &at));
     } else {
       DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
     }
@@ -505,7 +505,7 @@ static dea_status begin(struct dea_context *ctx, struct loading *l)
     DEA_TRY(ctx, block(ctx, l));
   } else {
     if (l->range == CHARGE && l->control.body > 0) { // open, before the others have a voltage
-      DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, 0, &at));
+      DEA_TRY(ctx, l->type->move(ctx, l->model, &l->control, 0, &at));
     }
     DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
   }

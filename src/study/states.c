@@ -330,7 +330,7 @@ static dea_status push(struct search *s, size_t from, const struct dea_push *dir
     return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted in the search for states");
   }
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
-  dea_status status = dea_model_push(s->ctx, s->type, s->model, direction, &point, &found);
+  dea_status status = s->type->push(s->ctx, s->model, direction, &point, &found);
   if (status == DEA_OK && found) {
     DEA_TRY(s->ctx, add_state(s, s->states[from].level, &point, note, &to));
   }
@@ -372,7 +372,7 @@ static dea_status search_from(struct search *s, size_t from)
     return DEA_OK;
   }
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
-  DEA_TRY(s->ctx, dea_model_soften(s->ctx, s->type, s->model, modes, stiffness));
+  DEA_TRY(s->ctx, s->type->soften(s->ctx, s->model, modes, stiffness));
   s->states[from].stiffness_N_per_m4 = stiffness[0];
   for (int side = 1; side >= -1; side -= 2) {
     const struct dea_push fold = {.kind = DEA_PUSH_FOLD, .side = side};
@@ -485,7 +485,7 @@ static dea_status transfer_one(struct search *s, struct dea_model *from,
   struct dea_load_point point;
   bool found = false;
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, from, saved));
-  dea_status status = dea_model_transfer(s->ctx, s->type, mesh->model, from, &point, &found);
+  dea_status status = s->type->transfer(s->ctx, mesh->model, from, &point, &found);
   DEA_TRY(s->ctx, status == DEA_OK && found ? keep_transferred(s, mesh, i, &point) : DEA_OK);
   return forgive(s->ctx, status);
 }

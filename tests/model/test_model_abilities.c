@@ -33,17 +33,11 @@ TEST(test_bare_model)
   struct dea_field_mesh *mesh;
   struct dea_state saved;
   double error;
-  bool found;
   const dea_status answers[] = {
       dea_model_path(ctx, &bare, NULL, &path, NULL, NULL, NULL),
       dea_model_profile(ctx, &bare, NULL, &profile),
       dea_model_indent(ctx, &bare, NULL, NULL, 0, &point),
-      dea_model_move(ctx, &bare, NULL, NULL, 0, &point),
-      dea_model_soften(ctx, &bare, NULL, 1, &error),
-      dea_model_push(ctx, &bare, NULL, NULL, &point, &found),
-      dea_model_hold(ctx, &bare, NULL, 1, 0, &error),
       dea_model_modes(ctx, &bare, NULL, NULL, 1, &point, &mesh),
-      dea_model_respond(ctx, &bare, NULL, NULL, NULL, NULL, 1, &point),
       dea_model_fields(ctx, &bare, NULL, DEA_FIELDS_VOLUME, &mesh),
       dea_model_save(ctx, &bare, NULL, &saved),
       dea_model_load(ctx, &bare, NULL, &saved),
