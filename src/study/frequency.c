@@ -174,21 +174,24 @@ static size_t count_bias(const struct dea_curve *curve, size_t from)
   return count;
 }
 
-/* Frequencies, amplitudes and phases of a line, [count] each. */
+/* Points at one bias, and the columns of an amplitude and its phase; -1: none. */
 struct line {
+  const struct dea_load_point *points; // [count]
   size_t count;
-  double *frequency_Hz, *amplitude_m, *phase_rad;
+  int amplitude, phase;
 };
 
-/* Memory of the first array is that of all. */
-static dea_status line_create(struct dea_context *ctx, size_t count, struct line *out)
+static double value_at(const struct line *line, int column, size_t i)
 {
-  double *memory = dea_alloc(ctx, 3 * count, sizeof *memory);
-  *out = (struct line){.count = count, .frequency_Hz = memory};
-  DEA_TRY_MEMORY(memory != NULL);
-  out->amplitude_m = memory + count;
-  out->phase_rad = memory + 2 * count;
-  return DEA_OK;
+  return column >= 0 ? dea_point_get(&line->points[i], column) : NAN;
+}
+
+/* Line of the fibre tip or the centre of a disc. */
+static struct line disc_line(const struct dea_load_point *points, size_t count, bool tip)
+{
+  return (struct line){points, count,
+                       dea_point_column_find(tip ? "fibre_tip_amplitude_m" : "centre_amplitude_m"),
+                       dea_point_column_find(tip ? "fibre_tip_phase_rad" : "centre_phase_rad")};
 }
 
 /* Amplitude in nm into the upper panel, phase in degrees without jumps into the lower one. */
@@ -201,36 +204,15 @@ static dea_status add_line(struct dea_context *ctx, struct dea_plot *plot, const
     DEA_TRY(ctx, dea_panel_add_as(ctx, &plot->panels[p], line->count, look, &series));
     series->title[0] = p == 0 ? series->title[0] : '\0';
     for (size_t i = 0; i < line->count; i++) {
-      double phase = line->phase_rad[i]; // the first is drawn from -90 to 270 degrees
+      double phase = value_at(line, line->phase, i); // the first is drawn from -90 to 270 degrees
       double turns = i == 0 ? (phase < -0.5 * pi ? 1 : 0) : round((before - phase) / (2 * pi));
       before = phase + 2 * pi * turns;
-      series->values[i] = line->frequency_Hz[i];
-      series->values[line->count + i] = p == 0 ? 1e9 * line->amplitude_m[i] : before * 180 / pi;
+      series->values[i] = line->points[i].frequency_Hz;
+      series->values[line->count + i] =
+          p == 0 ? 1e9 * value_at(line, line->amplitude, i) : before * 180 / pi;
     }
   }
   return DEA_OK;
-}
-
-/* Fills a line with the motion of the centre or of the tip at some points. */
-static void fill_disc(const struct dea_load_point *points, bool tip, struct line *line)
-{
-  for (size_t i = 0; i < line->count; i++) {
-    line->frequency_Hz[i] = points[i].frequency_Hz;
-    line->amplitude_m[i] = tip ? points[i].fibre_tip_amplitude_m : points[i].centre_amplitude_m;
-    line->phase_rad[i] = tip ? points[i].fibre_tip_phase_rad : points[i].centre_phase_rad;
-  }
-}
-
-static dea_status add_answer(struct dea_context *ctx, struct dea_plot *plot,
-                             const struct dea_load_point *points, size_t count, bool tip,
-                             const struct dea_series *look)
-{
-  struct line line;
-  DEA_TRY(ctx, line_create(ctx, count, &line));
-  fill_disc(points, tip, &line);
-  dea_status status = add_line(ctx, plot, &line, look);
-  dea_free(ctx, line.frequency_Hz);
-  return status;
 }
 
 static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
@@ -246,7 +228,8 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
                                 .colour = (enum dea_colour)(bias % COLOURS)};
       snprintf(look.title, sizeof look.title, "%.4g kV, %s", 1e-3 * points[0].voltage_V,
                k == 0 ? "centre" : "fibre tip");
-      DEA_TRY(ctx, add_answer(ctx, plot, points, count, k == 1, &look));
+      const struct line line = disc_line(points, count, k == 1);
+      DEA_TRY(ctx, add_line(ctx, plot, &line, &look));
     }
     from += count;
   }
@@ -384,17 +367,12 @@ static size_t common_axis(const struct dea_context *ctx, const struct dea_curve 
   return axis;
 }
 
-/* Fills a line with a monitor's motion along an axis at some points. */
-static void fill_line(const struct dea_context *ctx, const struct dea_load_point *points,
-                      int x_column, size_t axis, struct line *line)
+/* Line of a monitor's motion along an axis at some points. */
+static struct line monitor_line(const struct dea_context *ctx, const struct dea_load_point *points,
+                                size_t count, int x_column, size_t axis)
 {
-  const int amplitude = column_along(ctx, x_column, axis, "amplitude_m");
-  const int phase = column_along(ctx, x_column, axis, "phase_rad");
-  for (size_t i = 0; i < line->count; i++) {
-    line->frequency_Hz[i] = points[i].frequency_Hz;
-    line->amplitude_m[i] = amplitude >= 0 ? dea_point_get(&points[i], amplitude) : NAN;
-    line->phase_rad[i] = phase >= 0 ? dea_point_get(&points[i], phase) : NAN;
-  }
+  return (struct line){points, count, column_along(ctx, x_column, axis, "amplitude_m"),
+                       column_along(ctx, x_column, axis, "phase_rad")};
 }
 
 /* Name of a monitor: its title is "amplitude NAME x". */
@@ -422,17 +400,13 @@ static dea_status add_monitors(struct dea_context *ctx, struct dea_plot *plot,
     struct dea_series look = {.style = styles[monitor++ % (sizeof styles / sizeof styles[0])],
                               .colour = colour};
     char name[DEA_NAME_SIZE], title[DEA_LABEL_SIZE];
-    struct line line;
     name_of(ctx, c, name);
     snprintf(title, sizeof title, "%.4g kV, %.60s", 1e-3 * points[0].voltage_V, name);
     dea_label_escape(title, look.title, sizeof look.title);
-    DEA_TRY(ctx, line_create(ctx, count, &line));
-    fill_line(ctx, points, c, axis, &line);
-    dea_status status = largest_along(ctx, points, count, c, axis) > least
-                            ? add_line(ctx, plot, &line, &look)
-                            : DEA_OK;
-    dea_free(ctx, line.frequency_Hz);
-    DEA_TRY(ctx, status);
+    if (largest_along(ctx, points, count, c, axis) > least) {
+      const struct line line = monitor_line(ctx, points, count, c, axis);
+      DEA_TRY(ctx, add_line(ctx, plot, &line, &look));
+    }
   }
   return DEA_OK;
 }
@@ -493,33 +467,36 @@ static const double least_peak = 1e-3; // of the line's largest amplitude: less 
 /* What the line says at index i: NULL for nothing. */
 static const char *peak_word(const struct line *line, size_t i, double most)
 {
-  const double *a = line->amplitude_m;
-  const bool rises = i > 0 && a[i] > a[i - 1], last = i + 1 == line->count;
+  const double a = value_at(line, line->amplitude, i);
   if (i == 0) {
     return "lowest frequency";
   }
-  if (last) {
-    return rises && a[i] >= most ? "highest, still rising" : NULL;
+  const bool rises = a > value_at(line, line->amplitude, i - 1);
+  if (i + 1 == line->count) {
+    return rises && a >= most ? "highest, still rising" : NULL;
   }
-  return rises && a[i] >= a[i + 1] && a[i] >= least_peak * most ? "peak" : NULL;
+  const bool peak = a >= value_at(line, line->amplitude, i + 1) && a >= least_peak * most;
+  return rises && peak ? "peak" : NULL;
 }
 
-/* Rows of a line about the bias of `at`, whose flags they have. */
+/* Rows of a line, with the flags of the state at its bias. */
 static dea_status add_peaks(struct dea_context *ctx, const struct line *line, const char *moves,
-                            const struct dea_load_point *at, struct dea_result_table *table)
+                            struct dea_result_table *table)
 {
   double most = 0;
   for (size_t i = 0; i < line->count; i++) {
-    most = fmax(most, line->amplitude_m[i]);
+    most = fmax(most, value_at(line, line->amplitude, i));
   }
   for (size_t i = 0; i < line->count; i++) {
+    const struct dea_load_point *at = line->points;
+    const double amplitude_m = value_at(line, line->amplitude, i);
     const char *word = peak_word(line, i, most);
     char flags[DEA_FLAGS_SIZE];
     if (word != NULL) {
       DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(at->voltage_V), DEA_TEXT_CELL(moves),
-                                 DEA_TEXT_CELL(word), DEA_CELL(line->frequency_Hz[i]),
-                                 DEA_CELL(line->amplitude_m[i]), DEA_CELL(line->phase_rad[i]),
-                                 DEA_CELL(line->amplitude_m[i] / line->amplitude_m[0]),
+                                 DEA_TEXT_CELL(word), DEA_CELL(at[i].frequency_Hz),
+                                 DEA_CELL(amplitude_m), DEA_CELL(value_at(line, line->phase, i)),
+                                 DEA_CELL(amplitude_m / value_at(line, line->amplitude, 0)),
                                  DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(at), flags))));
     }
   }
@@ -528,26 +505,26 @@ static dea_status add_peaks(struct dea_context *ctx, const struct line *line, co
 
 /* All that moves about one bias; `from`: its first point in the curve. */
 static dea_status add_bias(struct dea_context *ctx, const struct dea_curve *curve, size_t from,
-                           struct line *line, struct dea_result_table *table)
+                           struct dea_result_table *table)
 {
   const struct dea_load_point *points = curve->points + from;
+  const size_t count = count_bias(curve, from);
   for (int tip = 0; tip < 2; tip++) {
-    fill_disc(points, tip == 1, line);
-    if (isfinite(line->amplitude_m[0])) {
-      DEA_TRY(ctx, add_peaks(ctx, line, tip ? "fibre tip" : "centre", points, table));
+    const struct line line = disc_line(points, count, tip == 1);
+    if (isfinite(value_at(&line, line.amplitude, 0))) {
+      DEA_TRY(ctx, add_peaks(ctx, &line, tip ? "fibre tip" : "centre", table));
     }
   }
   double largest, most;
   common_axis(ctx, curve, &largest);
   for (int c = 0; c < dea_column_count(ctx); c++) { // along the axis of each
-    const size_t axis =
-        is_monitor(ctx, curve, c) ? main_axis(ctx, points, line->count, c, &most) : 3;
+    const size_t axis = is_monitor(ctx, curve, c) ? main_axis(ctx, points, count, c, &most) : 3;
     char name[DEA_NAME_SIZE], moves[DEA_NAME_SIZE + 8];
     if (axis < 3 && most > least_share * largest) {
       name_of(ctx, c, name);
       snprintf(moves, sizeof moves, "%.60s, %c", name, "xyz"[axis]);
-      fill_line(ctx, points, c, axis, line);
-      DEA_TRY(ctx, add_peaks(ctx, line, moves, points, table));
+      const struct line line = monitor_line(ctx, points, count, c, axis);
+      DEA_TRY(ctx, add_peaks(ctx, &line, moves, table));
     }
   }
   return DEA_OK;
@@ -557,19 +534,14 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
 {
   struct dea_result_table *table;
   const struct dea_curve *curve = dea_result_find(result, model, study_name);
-  dea_status status = DEA_OK;
   if (curve == NULL || curve->count == 0) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &peak_table, model, 0, &table));
-  for (size_t from = 0, count; from < curve->count && status == DEA_OK; from += count) {
-    struct line line;
-    count = count_bias(curve, from);
-    DEA_TRY(ctx, line_create(ctx, count, &line));
-    status = add_bias(ctx, curve, from, &line, table);
-    dea_free(ctx, line.frequency_Hz);
+  for (size_t from = 0; from < curve->count; from += count_bias(curve, from)) {
+    DEA_TRY(ctx, add_bias(ctx, curve, from, table));
   }
-  return status;
+  return DEA_OK;
 }
 
 // The study --------------------------------------------------------------------------------------
