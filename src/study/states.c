@@ -125,6 +125,7 @@ struct state {
   bool searched;  // or given up
   size_t copies;  // of it by symmetry that were found
   size_t variant; // of the result that it belongs to, from 0 in this study
+  int is;         // itself; on a finer mesh the one that it comes to, NONE: it was lost
 };
 
 struct search {
@@ -134,22 +135,40 @@ struct search {
   const struct settings *settings;
   struct dea_result *result;
   double voltages_V[DEA_DESIGN_STOPS_MAX];
-  size_t level_count; // reached
-  struct state *states;
+  size_t level_count;   // reached
+  struct state *states; // on a finer mesh those of the design's, in the same order
   size_t count, capacity;
+  struct dea_model_size size; // of the mesh
+  double refinement;
   bool whole; // no plane of symmetry: each fibre goes its own way
   int parts;  // equal sectors that are pushed one by one; 0: none
 };
 
-static void free_search(struct search *s)
+/* Lets go of all but what the states say of themselves. */
+static void forget_films(struct search *s)
 {
   for (size_t i = 0; i < s->count; i++) {
     dea_state_free_values(s->ctx, &s->states[i].saved);
     dea_free(s->ctx, s->states[i].u);
+    s->states[i].saved = (struct dea_state){0};
+    s->states[i].u = NULL;
   }
-  dea_free(s->ctx, s->states);
   if (s->model != NULL) {
     s->type->destroy(s->ctx, s->model);
+    s->model = NULL;
+  }
+}
+
+static void free_search(struct search *s)
+{
+  forget_films(s);
+  dea_free(s->ctx, s->states);
+}
+
+static void measure(struct search *s)
+{
+  if (s->type->size != NULL) {
+    s->type->size(s->model, &s->size);
   }
 }
 
@@ -250,6 +269,7 @@ static dea_status add_state(struct search *s, size_t level, const struct dea_loa
                           .u = u,
                           .point_count = count,
                           .level = level,
+                          .is = (int)s->count,
                           .stiffness_N_per_m4 = NAN,
                           .leads = {NONE, NONE}};
   snprintf(state->reached, sizeof state->reached, "%s", reached);
@@ -421,45 +441,14 @@ static dea_status search_all(struct search *s)
 
 // Finer meshes -----------------------------------------------------------------------------------
 
-/* A state transferred to a mesh. */
-struct transferred {
-  struct dea_load_point point;
-  int is;    // the state that it is on this mesh, in the order of the search; NONE: it was lost
-  double *u; // as of struct state, of the last mesh only; owned
-  size_t point_count;
-  struct dea_state saved; // the same
-};
-
-/* A mesh and what came to it. */
-struct finer {
-  struct dea_model *model; // owned, of the last mesh only
-  struct dea_model_size size;
-  double refinement;
-  struct transferred *transferred; // [count of states], owned
-};
-
-static void forget_mesh(struct search *s, struct finer *mesh)
-{
-  for (size_t i = 0; mesh->transferred != NULL && i < s->count; i++) {
-    dea_state_free_values(s->ctx, &mesh->transferred[i].saved);
-    dea_free(s->ctx, mesh->transferred[i].u);
-    mesh->transferred[i].saved = (struct dea_state){0};
-    mesh->transferred[i].u = NULL;
-  }
-  if (mesh->model != NULL) {
-    s->type->destroy(s->ctx, mesh->model);
-    mesh->model = NULL;
-  }
-}
-
 /* Which of the states of its level, of those that came to the mesh before it, the i-th one is. */
-static int same_on_mesh(const struct search *s, const struct finer *mesh, size_t i)
+static int same_on_mesh(const struct search *mesh, size_t i)
 {
-  const struct transferred *one = &mesh->transferred[i];
+  const struct state *one = &mesh->states[i];
   for (size_t k = 0; k < i; k++) {
-    const struct transferred *other = &mesh->transferred[k];
-    if (s->states[k].level == s->states[i].level && other->is == (int)k &&
-        distance_m(other->u, one->u, one->point_count) < s->settings->apart_m.si) {
+    const struct state *other = &mesh->states[k];
+    if (other->level == one->level && other->is == (int)k &&
+        distance_m(other->u, one->u, one->point_count) < mesh->settings->apart_m.si) {
       return (int)k;
     }
   }
@@ -467,117 +456,103 @@ static int same_on_mesh(const struct search *s, const struct finer *mesh, size_t
 }
 
 /* The i-th state is where the mesh's model is. */
-static dea_status keep_transferred(struct search *s, struct finer *mesh, size_t i,
+static dea_status keep_transferred(struct search *mesh, size_t i,
                                    const struct dea_load_point *point)
 {
-  struct transferred *one = &mesh->transferred[i];
-  struct search on_mesh = {.ctx = s->ctx, .type = s->type, .model = mesh->model};
+  struct state *one = &mesh->states[i];
   one->point = *point;
   one->is = (int)i;
-  DEA_TRY(s->ctx, store_film(&on_mesh, &one->u, &one->point_count));
-  return keep_model(&on_mesh, &one->saved);
+  DEA_TRY(mesh->ctx, store_film(mesh, &one->u, &one->point_count));
+  return keep_model(mesh, &one->saved);
 }
 
-/* The i-th state from a model of the mesh before, which has its state there. */
-static dea_status transfer_one(struct search *s, struct dea_model *from,
-                               const struct dea_state *saved, struct finer *mesh, size_t i)
+/* The i-th state from the mesh before. */
+static dea_status transfer_one(struct search *before, struct search *mesh, size_t i)
 {
+  struct dea_context *ctx = mesh->ctx;
   struct dea_load_point point;
   bool found = false;
-  DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, from, saved));
-  dea_status status = s->type->transfer(s->ctx, mesh->model, from, &point, &found);
-  DEA_TRY(s->ctx, status == DEA_OK && found ? keep_transferred(s, mesh, i, &point) : DEA_OK);
-  return forgive(s->ctx, status);
+  DEA_TRY(ctx, dea_model_load(ctx, mesh->type, before->model, &before->states[i].saved));
+  dea_status status = mesh->type->transfer(ctx, mesh->model, before->model, &point, &found);
+  DEA_TRY(ctx, status == DEA_OK && found ? keep_transferred(mesh, i, &point) : DEA_OK);
+  return forgive(ctx, status);
 }
 
 /* A state that was lost, along its branch from the level above or below, on this mesh. */
-static dea_status follow_one(struct search *s, struct finer *mesh, size_t i)
+static dea_status follow_one(struct search *mesh, size_t i)
 {
-  for (int direction = UP; direction <= DOWN && mesh->transferred[i].is == NONE; direction++) {
-    int near = s->states[i].leads[direction];
+  for (int direction = UP; direction <= DOWN && mesh->states[i].is == NONE; direction++) {
+    int near = mesh->states[i].leads[direction];
     struct dea_load_point point;
-    if (near == NONE || s->states[near].leads[direction == UP ? DOWN : UP] != (int)i ||
-        mesh->transferred[near].is != near) {
+    if (near == NONE || mesh->states[near].leads[direction == UP ? DOWN : UP] != (int)i ||
+        mesh->states[near].is != near) {
       continue;
     }
-    DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, mesh->model, &mesh->transferred[near].saved));
-    dea_status status = s->type->solve(s->ctx, mesh->model, s->states[i].point.voltage_V, &point);
+    DEA_TRY(mesh->ctx,
+            dea_model_load(mesh->ctx, mesh->type, mesh->model, &mesh->states[near].saved));
+    dea_status status =
+        mesh->type->solve(mesh->ctx, mesh->model, mesh->voltages_V[mesh->states[i].level], &point);
     if (status == DEA_OK && point.stable) {
-      DEA_TRY(s->ctx, keep_transferred(s, mesh, i, &point));
+      DEA_TRY(mesh->ctx, keep_transferred(mesh, i, &point));
     }
-    DEA_TRY(s->ctx, forgive(s->ctx, status));
+    DEA_TRY(mesh->ctx, forgive(mesh->ctx, status));
   }
   return DEA_OK;
 }
 
-/* All states from the mesh before (NULL: of the search) to this one: each by itself, what is lost
- * along its branch, up and then down. */
-static dea_status transfer_all(struct search *s, struct finer *before, struct finer *mesh)
+/* All states from the mesh before to this one: each by itself, what is lost along its branch, up
+ * and then down. */
+static dea_status transfer_all(struct search *before, struct search *mesh)
 {
   enum { BY_ITSELF, FOLLOWED_UP, FOLLOWED_DOWN, PASSES };
   char what[DEA_NAME_SIZE + 48];
-  snprintf(what, sizeof what, "%s states at refinement %.4g", s->type->name, mesh->refinement);
-  for (size_t k = 0; k < PASSES * s->count; k++) {
-    size_t pass = k / s->count, at = k % s->count,
-           i = pass == FOLLOWED_DOWN ? s->count - 1 - at : at;
-    const struct dea_state *saved =
-        before != NULL ? &before->transferred[i].saved : &s->states[i].saved;
-    if (dea_interrupted_anywhere(s->ctx)) {
-      return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted as states went to a finer mesh");
+  snprintf(what, sizeof what, "%s states at refinement %.4g", mesh->type->name, mesh->refinement);
+  for (size_t k = 0; k < PASSES * mesh->count; k++) {
+    size_t pass = k / mesh->count, at = k % mesh->count,
+           i = pass == FOLLOWED_DOWN ? mesh->count - 1 - at : at;
+    if (dea_interrupted_anywhere(mesh->ctx)) {
+      return dea_fail(mesh->ctx, DEA_E_INTERRUPTED, "interrupted as states went to a finer mesh");
     }
-    if (pass == BY_ITSELF && (before == NULL || before->transferred[i].is == (int)i)) {
-      DEA_TRY(s->ctx, transfer_one(s, before != NULL ? before->model : s->model, saved, mesh, i));
-    } else if (pass != BY_ITSELF && mesh->transferred[i].is == NONE) {
-      DEA_TRY(s->ctx, follow_one(s, mesh, i));
+    if (pass == BY_ITSELF && before->states[i].is == (int)i) {
+      DEA_TRY(mesh->ctx, transfer_one(before, mesh, i));
+    } else if (pass != BY_ITSELF && mesh->states[i].is == NONE) {
+      DEA_TRY(mesh->ctx, follow_one(mesh, i));
     }
-    dea_progress(s->ctx, what, k + 1, PASSES * s->count);
+    dea_progress(mesh->ctx, what, k + 1, PASSES * mesh->count);
   }
-  for (size_t i = 0; i < s->count; i++) {
-    int was = before != NULL ? before->transferred[i].is : (int)i;
+  for (size_t i = 0; i < mesh->count; i++) {
+    int was = before->states[i].is;
     if (was != NONE && was != (int)i) { // one with another since an earlier mesh
-      mesh->transferred[i].point = mesh->transferred[was].point;
-      mesh->transferred[i].is = mesh->transferred[was].is;
-    } else if (mesh->transferred[i].is != NONE) {
-      mesh->transferred[i].is = same_on_mesh(s, mesh, i);
+      mesh->states[i].point = mesh->states[was].point;
+      mesh->states[i].is = mesh->states[was].is;
+    } else if (mesh->states[i].is != NONE) {
+      mesh->states[i].is = same_on_mesh(mesh, i);
     }
   }
   return DEA_OK;
 }
 
-static dea_status build_mesh(struct search *s, double refinement, struct finer *mesh)
+/* A finer mesh that no state has come to yet. */
+static dea_status build_mesh(const struct search *s, double refinement, struct search *mesh)
 {
   struct dea_model_settings settings = dea_model_settings_of(s->result->design);
   refine_model(s->settings, refinement, &settings);
+  *mesh = *s;
+  mesh->model = NULL;
   mesh->refinement = refinement;
-  mesh->transferred = dea_alloc(s->ctx, s->count, sizeof *mesh->transferred);
-  DEA_TRY_MEMORY(mesh->transferred != NULL);
+  mesh->states = dea_alloc(s->ctx, s->count, sizeof *mesh->states);
+  mesh->count = mesh->states != NULL ? s->count : 0;
+  DEA_TRY_MEMORY(mesh->states != NULL);
   for (size_t i = 0; i < s->count; i++) {
-    mesh->transferred[i].is = NONE;
+    const struct state *of = &s->states[i];
+    mesh->states[i] = (struct state){.point = dea_load_point_empty(),
+                                     .level = of->level,
+                                     .leads = {of->leads[UP], of->leads[DOWN]},
+                                     .is = NONE};
   }
   DEA_TRY(s->ctx, s->type->create(s->ctx, s->result->device, &settings, &mesh->model));
-  if (s->type->size != NULL) {
-    s->type->size(mesh->model, &mesh->size);
-  }
+  measure(mesh);
   return DEA_OK;
-}
-
-/* meshes [refinement_count], zeroed; *count: of those that all states have gone to, or been lost on
- * the way to. */
-static dea_status transfer_states(struct search *s, struct finer *meshes, size_t *count)
-{
-  const struct settings *settings = s->settings;
-  dea_status status = DEA_OK;
-  for (*count = 0; *count < settings->refinement_count && status == DEA_OK;) {
-    struct finer *before = *count > 0 ? &meshes[*count - 1] : NULL;
-    struct finer *mesh = &meshes[*count];
-    status = build_mesh(s, settings->refinements[*count].si, mesh);
-    status = status == DEA_OK ? transfer_all(s, before, mesh) : status;
-    if (before != NULL) {
-      forget_mesh(s, before);
-    }
-    *count += status == DEA_OK;
-  }
-  return status;
 }
 
 // Result -----------------------------------------------------------------------------------------
@@ -639,7 +614,7 @@ static dea_status append_state(struct search *s, size_t i, size_t *branches)
     ++*branches;
     DEA_TRY(ctx, dea_result_add_variant(ctx, s->result, s->type->name, study_name, name, &variant));
     if (s->type->size != NULL) {
-      s->type->size(s->model, &variant->size);
+      variant->size = s->size;
       variant->refinement = dea_model_settings_of(s->result->design).refinement;
     }
     DEA_TRY(ctx, dea_curve_end(ctx, &variant->curve, DEA_OK));
@@ -801,71 +776,57 @@ static dea_status add_band_row(const struct search *s, size_t level, const struc
       DEA_CELL(extreme(s, level, "lowest_z_m", -1)), DEA_CELL(extreme(s, level, "highest_z_m", 1)));
 }
 
-/* The i-th state on a mesh; NULL: on the design's. */
-static dea_status add_mesh_row(const struct search *s, size_t i, const struct finer *mesh,
+/* The i-th state on a mesh. */
+static dea_status add_mesh_row(const struct search *s, size_t i, const struct search *mesh,
                                double lowest_J, struct dea_result_table *table)
 {
-  const struct dea_load_point unknown = dea_load_point_empty();
-  const struct state *state = &s->states[i];
-  const struct dea_model_settings settings = dea_model_settings_of(s->result->design);
-  struct dea_model_size size = {0};
-  int is = mesh != NULL ? mesh->transferred[i].is : (int)i;
-  const struct dea_load_point *p = is == NONE     ? &unknown
-                                   : mesh != NULL ? &mesh->transferred[i].point
-                                                  : &state->point;
+  const struct dea_load_point *p = &mesh->states[i].point;
+  const int is = mesh->states[i].is;
   char name[NAME_SIZE], same[NAME_SIZE] = "-", flags[DEA_FLAGS_SIZE] = "";
-  name_branch(state->variant, name);
+  name_branch(s->states[i].variant, name);
   if (is != NONE) {
     name_branch(s->states[is].variant, same);
     dea_flags_text(dea_load_point_flags(p), flags);
   }
-  if (mesh != NULL) {
-    size = mesh->size;
-  } else if (s->type->size != NULL) {
-    s->type->size(s->model, &size);
-  }
-  return DEA_TABLE_ADD(
-      s->ctx, table, DEA_CELL(state->point.voltage_V), DEA_TEXT_CELL(name),
-      DEA_CELL(mesh != NULL ? mesh->refinement : refinement_of(s->settings, &settings)),
-      DEA_CELL((double)size.unknowns), DEA_TEXT_CELL(same), DEA_CELL(p->energy_J),
-      DEA_CELL(p->energy_J - lowest_J), SHAPE_OF(p), DEA_TEXT_CELL(flags));
+  return DEA_TABLE_ADD(s->ctx, table, DEA_CELL(s->states[i].point.voltage_V), DEA_TEXT_CELL(name),
+                       DEA_CELL(mesh->refinement), DEA_CELL((double)mesh->size.unknowns),
+                       DEA_TEXT_CELL(same), DEA_CELL(p->energy_J), DEA_CELL(p->energy_J - lowest_J),
+                       SHAPE_OF(p), DEA_TEXT_CELL(flags));
 }
 
-/* Lowest energy of those at a level that came to a mesh (NULL: of the search). */
-static double lowest_on(const struct search *s, size_t level, const struct finer *mesh)
+/* Lowest energy of those at a level that came to a mesh. */
+static double lowest_on(const struct search *mesh, size_t level)
 {
   double lowest_J = INFINITY;
-  for (size_t i = 0; i < s->count; i++) {
-    bool there = mesh == NULL || mesh->transferred[i].is != NONE;
-    if (s->states[i].level == level && there) {
-      lowest_J = fmin(lowest_J, mesh != NULL ? mesh->transferred[i].point.energy_J
-                                             : s->states[i].point.energy_J);
+  for (size_t i = 0; i < mesh->count; i++) {
+    if (mesh->states[i].level == level && mesh->states[i].is != NONE) {
+      lowest_J = fmin(lowest_J, mesh->states[i].point.energy_J);
     }
   }
   return lowest_J;
 }
 
-/* State by state from mesh to mesh. */
-static dea_status add_meshes(struct search *s, const struct finer *meshes, size_t count)
+/* State by state from mesh to mesh, [count]. */
+static dea_status add_meshes(struct search *s, const struct search *meshes, size_t count)
 {
   struct dea_result_table *table;
   DEA_TRY(s->ctx, dea_result_add_table(s->ctx, s->result, &mesh_table, s->type->name, 0, &table));
   for (size_t level = 0; level < s->level_count; level++) {
     for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
       for (size_t m = 0; m <= count; m++) {
-        const struct finer *mesh = m > 0 ? &meshes[m - 1] : NULL;
-        DEA_TRY(s->ctx, add_mesh_row(s, i, mesh, lowest_on(s, level, mesh), table));
+        const struct search *mesh = m > 0 ? &meshes[m - 1] : s;
+        DEA_TRY(s->ctx, add_mesh_row(s, i, mesh, lowest_on(mesh, level), table));
       }
     }
   }
   return DEA_OK;
 }
 
-/* What is there also where the way to a finer mesh fails. */
+/* From mesh to mesh; what is there also where the way to a finer one fails. */
 static dea_status refine(struct search *s)
 {
-  struct finer meshes[MESHES_MAX] = {0};
-  size_t count = 0;
+  struct search meshes[MESHES_MAX] = {0}, *before = s;
+  size_t count = 0; // that all states have gone to, or been lost on the way to
   if (s->settings->refinement_count == 0) {
     return DEA_OK;
   }
@@ -874,11 +835,18 @@ static dea_status refine(struct search *s)
                            "model %s cannot transfer states to finer meshes of this device",
                            s->type->name);
   }
-  dea_status status = transfer_states(s, meshes, &count);
+  dea_status status = DEA_OK;
+  while (count < s->settings->refinement_count && status == DEA_OK) {
+    struct search *mesh = &meshes[count];
+    status = build_mesh(s, s->settings->refinements[count].si, mesh);
+    status = status == DEA_OK ? transfer_all(before, mesh) : status;
+    forget_films(before);
+    before = mesh;
+    count += status == DEA_OK;
+  }
   dea_status put = status != DEA_E_MEMORY ? add_meshes(s, meshes, count) : DEA_OK;
-  for (size_t m = 0; m < MESHES_MAX; m++) {
-    forget_mesh(s, &meshes[m]);
-    dea_free(s->ctx, meshes[m].transferred);
+  for (size_t m = 0; m < MESHES_MAX && meshes[m].ctx != NULL; m++) {
+    free_search(&meshes[m]);
   }
   return status == DEA_OK ? put : status;
 }
@@ -995,11 +963,19 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   (void)model; // none
   const struct dea_design *design = result->design;
   const struct settings *settings = dea_design_settings(design, &section)->values;
-  struct search s = {.ctx = ctx, .type = type, .settings = settings, .result = result};
+  const struct dea_model_settings own = dea_model_settings_of(design);
+  struct search s = {.ctx = ctx,
+                     .type = type,
+                     .settings = settings,
+                     .result = result,
+                     .refinement = refinement_of(settings, &own)};
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, false, s.voltages_V);
   qsort(s.voltages_V, count, sizeof *s.voltages_V, dea_rising);
   dea_status status = dea_model_create_whole(ctx, type, design, result->device, &s.model);
+  if (status == DEA_OK) {
+    measure(&s);
+  }
   dea_status swept = status == DEA_OK ? sweep_up(&s, count) : status;
   status = forgive(ctx, swept); // states at the voltages that there are
   status = status == DEA_OK && s.level_count > 0 ? search_all(&s) : status;
