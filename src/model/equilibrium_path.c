@@ -510,24 +510,33 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
   return fail_seek(ctx, path, voltage_V, &point);
 }
 
-const struct dea_event *dea_path_limit(const struct dea_path *path)
+static struct dea_path *path_of(const struct dea_model *model)
 {
+  return *(struct dea_path *const *)model;
+}
+
+const struct dea_event *dea_path_limit(const struct dea_model *model)
+{
+  const struct dea_path *path = path_of(model);
   return path->limited ? &path->limit : path->crossed && path->slackened ? &path->slack : NULL;
 }
 
-const struct dea_event *dea_path_passed(const struct dea_path *path)
+const struct dea_event *dea_path_passed(const struct dea_model *model)
 {
+  const struct dea_path *path = path_of(model);
   return path->passed ? &path->limit : NULL;
 }
 
-dea_status dea_path_solve(struct dea_context *ctx, struct dea_path *path, const char *model,
-                          double voltage_V, double max_stretch, struct dea_load_point *out)
+dea_status dea_path_solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                          struct dea_load_point *out)
 {
+  struct dea_path *path = path_of(model);
+  const struct dea_path_system *system = &path->system;
   double from_V = path->state.voltage_V;
-  DEA_TRY(ctx, dea_path_seek(ctx, path, voltage_V, max_stretch));
+  DEA_TRY(ctx, dea_path_seek(ctx, path, voltage_V, system->end_stretch));
   DEA_TRY(ctx, dea_path_point(ctx, path, out));
   if (path->passed) {
-    DEA_TRY(ctx, dea_model_report_passed(ctx, model, from_V, voltage_V, &path->limit));
+    DEA_TRY(ctx, dea_model_report_passed(ctx, system->model, from_V, voltage_V, &path->limit));
   }
   out->own_flags |= (unsigned)path->beyond << DEA_FLAG_STATES;
   return DEA_OK;
@@ -629,14 +638,15 @@ static bool cut_at_end(struct trace *trace, const struct dea_path_state *from, d
   return cut;
 }
 
-dea_status dea_path_trace(struct dea_context *ctx, struct dea_path *path,
-                          const struct dea_path_options *options, double stretch_factor,
-                          dea_point_sink points, dea_event_sink events, void *user)
+dea_status dea_path_trace(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_path_options *options, dea_point_sink points,
+                          dea_event_sink events, void *user)
 {
+  struct dea_path *path = path_of(model);
   struct trace trace = {.path = path,
                         .events = events,
                         .user = user,
-                        .watch = {.stretch_end = options->max_stretch / stretch_factor,
+                        .watch = {.stretch_end = options->max_stretch / path->system.pre_stretch,
                                   .voltage_end_V = options->max_voltage_V}};
   struct dea_path_state from = path->rest, to;
   double ds = step_first, taken;

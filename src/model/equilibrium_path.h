@@ -26,6 +26,9 @@ struct dea_path_system {
   /* Share, 0 to 1, of what keeps the system from being at rest at the start it is given (stiffness
    * of electrodes); 0: the start is its rest. The path begins with 1. NULL: none. */
   void (*ramp)(void *self, double share);
+  double pre_stretch; // total stretch over electrode_stretch
+  double end_stretch; // electrode_stretch at which a search for a snapped state gives up
+  const char *model;  // that it is of
 };
 
 struct dea_path_state {
@@ -55,26 +58,26 @@ const struct dea_path_state *dea_path_state_get(const struct dea_path *path);
 dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double voltage_V,
                          double max_stretch);
 
-/* dea_path_seek as a model's solve, and what it says of the state. Where that is beyond a limit
- * point on the way there is a warning, and the flag DEA_FLAG_STATES until the path has snapped
- * back. */
-dea_status dea_path_solve(struct dea_context *ctx, struct dea_path *path, const char *model,
-                          double voltage_V, double max_stretch, struct dea_load_point *out);
-
-/* The limit point that the last seek, which found a state, has gone past; lent until the next.
- * NULL: none. */
-const struct dea_event *dea_path_passed(const struct dea_path *path);
-
-/* Where the last seek that found nothing came to its end: the first limit point, where a taut film
- * thins in one place before it, or the loss of tension; lent until the next. NULL: none. */
-const struct dea_event *dea_path_limit(const struct dea_path *path);
-
-/* The whole path from rest, as dea_model_type.path says. stretch_factor: total stretch over
- * electrode_stretch (the pre-stretch). */
-dea_status dea_path_trace(struct dea_context *ctx, struct dea_path *path,
-                          const struct dea_path_options *options, double stretch_factor,
-                          dea_point_sink points, dea_event_sink events, void *user);
-
 /* Load point of the current state. */
 dea_status dea_path_point(struct dea_context *ctx, struct dea_path *path,
                           struct dea_load_point *out);
+
+// As functions of a model's type: the first member of such a model is its path ------------------
+
+/* dea_path_seek, and what it says of the state. Where that is beyond a limit point on the way there
+ * is a warning, and the flag DEA_FLAG_STATES until the path has snapped back. */
+dea_status dea_path_solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                          struct dea_load_point *out);
+
+/* The limit point that the last seek, which found a state, has gone past; lent until the next.
+ * NULL: none. */
+const struct dea_event *dea_path_passed(const struct dea_model *model);
+
+/* Where the last seek that found nothing came to its end: the first limit point, where a taut film
+ * thins in one place before it, or the loss of tension; lent until the next. NULL: none. */
+const struct dea_event *dea_path_limit(const struct dea_model *model);
+
+/* The whole path from rest. */
+dea_status dea_path_trace(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_path_options *options, dea_point_sink points,
+                          dea_event_sink events, void *user);

@@ -157,9 +157,15 @@ static double stretch_at_order(const struct dea_device *device, size_t order, do
   struct dea_path *path;
   struct dea_load_point p;
   assert_int_equal(dea_disc_create(ctx, device, order, &r.disc), DEA_OK);
-  const struct dea_path_system system = {
-      dea_disc_unknowns(&r.disc),           &r,  refined_evaluate, refined_point,
-      dea_film_voltage_scale(&r.disc.film), NULL};
+  const struct dea_path_system system = {dea_disc_unknowns(&r.disc),
+                                         &r,
+                                         refined_evaluate,
+                                         refined_point,
+                                         dea_film_voltage_scale(&r.disc.film),
+                                         NULL,
+                                         1,
+                                         10,
+                                         "axisymmetric"};
   assert_int_equal(dea_path_create(ctx, &system, rest, &path), DEA_OK);
   assert_int_equal(dea_path_seek(ctx, path, voltage_V, 10), DEA_OK);
   assert_int_equal(dea_path_point(ctx, path, &p), DEA_OK);

@@ -63,6 +63,10 @@ static dea_status take_point(void *user, const struct dea_load_point *point)
   return DEA_OK;
 }
 
+struct dea_model {
+  struct dea_path *path;
+};
+
 /* Path of a free film of 100 um to total stretch `end`, at dead load of pre-stretch `pre`. */
 static struct record trace(const struct dea_material *material, double pre, double end)
 {
@@ -74,14 +78,14 @@ static struct record trace(const struct dea_material *material, double pre, doub
   free.load_Pa = plane.s1;
   free.scale_Pa = dea_film_modulus(&free.film);
   const struct dea_path_system system = {
-      1, &free, free_evaluate, free_point, dea_film_voltage_scale(&free.film), NULL};
+      1, &free, free_evaluate, free_point, dea_film_voltage_scale(&free.film), NULL, 1, 10, "free"};
   const struct dea_path_options options = {
       .max_stretch = end, .max_voltage_V = INFINITY, .max_points = 5000};
-  struct dea_path *path;
+  struct dea_model model;
   struct record record = {0};
-  assert_int_equal(dea_path_create(ctx, &system, &pre, &path), DEA_OK);
-  assert_int_equal(dea_path_trace(ctx, path, &options, 1, take_point, take_event, &record), DEA_OK);
-  dea_path_destroy(ctx, path);
+  assert_int_equal(dea_path_create(ctx, &system, &pre, &model.path), DEA_OK);
+  assert_int_equal(dea_path_trace(ctx, &model, &options, take_point, take_event, &record), DEA_OK);
+  dea_path_destroy(ctx, model.path);
   dea_context_destroy(ctx);
   return record;
 }
@@ -171,14 +175,14 @@ TEST(test_points_lie_on_the_closed_form)
   struct dea_material m = test_yeoh();
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 3e5};
   const struct dea_path_system system = {
-      1, &free, free_evaluate, free_point, dea_film_voltage_scale(&free.film), NULL};
+      1, &free, free_evaluate, free_point, dea_film_voltage_scale(&free.film), NULL, 1, 10, "free"};
   const struct dea_path_options options = {
       .max_stretch = 2.5, .max_voltage_V = INFINITY, .max_points = 5000};
   const double start = 1;
-  struct dea_path *path;
-  assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
-  assert_int_equal(dea_path_trace(ctx, path, &options, 1, check_on_curve, NULL, &m), DEA_OK);
-  dea_path_destroy(ctx, path);
+  struct dea_model model;
+  assert_int_equal(dea_path_create(ctx, &system, &start, &model.path), DEA_OK);
+  assert_int_equal(dea_path_trace(ctx, &model, &options, check_on_curve, NULL, &m), DEA_OK);
+  dea_path_destroy(ctx, model.path);
   dea_context_destroy(ctx);
 }
 
@@ -192,11 +196,12 @@ static void seek_with(double sign)
   struct dea_material m = test_material("gent", 1e5, 90, 0);
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
   double unit_V = dea_film_voltage_scale(&free.film);
-  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V, NULL};
+  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V, NULL,
+                                         1, 10,    "free"};
   const double start = 1;
-  struct dea_path *path;
+  struct dea_model model;
   struct dea_load_point p;
-  assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
+  assert_int_equal(dea_path_create(ctx, &system, &start, &model.path), DEA_OK);
   static const struct {
     double field;
     bool far;
@@ -205,9 +210,8 @@ static void seek_with(double sign)
                {0.5, true, 0},  {0.30, true, 0},  {0.28, false, 0.28852}};
   for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
     size_t told = dea_finding_count(ctx, DEA_WARNING);
-    assert_int_equal(dea_path_solve(ctx, path, "free", sign * steps[i].field * unit_V, 10, &p),
-                     DEA_OK);
-    const struct dea_event *passed = dea_path_passed(path);
+    assert_int_equal(dea_path_solve(ctx, &model, sign * steps[i].field * unit_V, &p), DEA_OK);
+    const struct dea_event *passed = dea_path_passed(&model);
     assert_int_equal(passed != NULL, steps[i].passed > 0);
     assert_int_equal(dea_finding_count(ctx, DEA_WARNING) - told, passed != NULL);
     if (passed != NULL) {
@@ -219,7 +223,7 @@ static void seek_with(double sign)
     assert_true(p.stable);
     assert_int_equal(p.electrode_stretch > 3, steps[i].far);
   }
-  dea_path_destroy(ctx, path);
+  dea_path_destroy(ctx, model.path);
   dea_context_destroy(ctx);
 }
 
@@ -236,25 +240,26 @@ TEST(test_seek_beyond_pull_in_keeps_the_last_point)
   struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
   double unit_V = dea_film_voltage_scale(&free.film);
-  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V, NULL};
+  const struct dea_path_system system = {1, &free, free_evaluate, free_point, unit_V, NULL,
+                                         1, 10,    "free"};
   const double start = 1;
-  struct dea_path *path;
+  struct dea_model model;
   struct dea_load_point before, after;
-  assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
-  assert_int_equal(dea_path_seek(ctx, path, 0.68 * unit_V, 10), DEA_OK);
-  assert_int_equal(dea_path_point(ctx, path, &before), DEA_OK);
-  assert_null(dea_path_limit(path));
-  assert_int_equal(dea_path_seek(ctx, path, 0.69 * unit_V, 10), DEA_E_NO_EQUILIBRIUM);
-  const struct dea_event *limit = dea_path_limit(path);
+  assert_int_equal(dea_path_create(ctx, &system, &start, &model.path), DEA_OK);
+  assert_int_equal(dea_path_seek(ctx, model.path, 0.68 * unit_V, 10), DEA_OK);
+  assert_int_equal(dea_path_point(ctx, model.path, &before), DEA_OK);
+  assert_null(dea_path_limit(&model));
+  assert_int_equal(dea_path_seek(ctx, model.path, 0.69 * unit_V, 10), DEA_E_NO_EQUILIBRIUM);
+  const struct dea_event *limit = dea_path_limit(&model);
   assert_non_null(limit); // stretch 2^(1/3), field^2 = l^-2 - l^-8
   double l = pow(2, 1.0 / 3);
   assert_int_equal(limit->kind, DEA_EVENT_PULL_IN);
   assert_close(limit->point.electrode_stretch, l, 1e-7, 0);
   assert_close(limit->point.voltage_V, unit_V * sqrt(pow(l, -2) - pow(l, -8)), 1e-10, 0);
-  assert_int_equal(dea_path_point(ctx, path, &after), DEA_OK);
+  assert_int_equal(dea_path_point(ctx, model.path, &after), DEA_OK);
   assert_close(after.electrode_stretch, before.electrode_stretch, 0, 0);
   assert_close(after.voltage_V, before.voltage_V, 0, 0);
-  dea_path_destroy(ctx, path);
+  dea_path_destroy(ctx, model.path);
   dea_context_destroy(ctx);
 }
 
@@ -277,10 +282,11 @@ TEST(test_events_come_in_order)
   struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 1e5};
   const struct dea_path_system system = {
-      1, &free, free_evaluate, crowded_point, dea_film_voltage_scale(&free.film), NULL};
+      1, &free, free_evaluate, crowded_point, dea_film_voltage_scale(&free.film), NULL,
+      1, 10,    "free"};
   const double start = 1;
-  struct dea_path *path;
-  assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
+  struct dea_model model;
+  assert_int_equal(dea_path_create(ctx, &system, &start, &model.path), DEA_OK);
   static const enum dea_event_kind kinds[] = {DEA_EVENT_BREAKDOWN, DEA_EVENT_SLACK,
                                               DEA_EVENT_PULL_IN};
   static const struct {
@@ -291,14 +297,14 @@ TEST(test_events_come_in_order)
     const struct dea_path_options options = {
         .max_stretch = runs[k].end, .max_voltage_V = INFINITY, .max_points = 5000};
     struct record r = {0};
-    assert_int_equal(dea_path_trace(ctx, path, &options, 1, take_point, take_event, &r), DEA_OK);
+    assert_int_equal(dea_path_trace(ctx, &model, &options, take_point, take_event, &r), DEA_OK);
     assert_close(r.last_stretch, runs[k].end, 1e-9, 0);
     assert_int_equal(r.event_count, runs[k].events);
     for (size_t i = 0; i < r.event_count; i++) {
       assert_int_equal(r.events[i].kind, kinds[i]);
     }
   }
-  dea_path_destroy(ctx, path);
+  dea_path_destroy(ctx, model.path);
   dea_context_destroy(ctx);
 }
 

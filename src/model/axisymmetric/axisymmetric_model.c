@@ -17,12 +17,11 @@ enum {
 };
 
 struct dea_model {
+  struct dea_path *path;    // first
   struct dea_device device; // the disc, also of a layout that is one
   struct dea_disc disc;
   double rest_energy; // in the disc's unit
-  double max_stretch; // total; where a search for a snapped state gives up
   double profile[PROFILE_COLUMNS][PROFILE_COUNT];
-  struct dea_path *path;
 };
 
 static dea_status evaluate(void *self, const double *u, double voltage_V, double *g, double *K,
@@ -148,7 +147,6 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
   static const double rest[DEA_PATH_UNKNOWNS_MAX] = {0};
   DEA_TRY(ctx, dea_disc_create(ctx, device, ORDER_OUTER, &model->disc));
   DEA_TRY(ctx, dea_film_report_weight(ctx, device, "axisymmetric"));
-  model->max_stretch = 10 * device->pre_stretch;
   const struct dea_path_system system = {
       .unknowns = dea_disc_unknowns(&model->disc),
       .self = model,
@@ -156,6 +154,9 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
       .point = point,
       .voltage_scale_V = dea_film_voltage_scale(&model->disc.film),
       .ramp = model->disc.film.electrode != NULL ? ramp : NULL,
+      .pre_stretch = device->pre_stretch,
+      .end_stretch = 10,
+      .model = "axisymmetric",
   };
   DEA_TRY(ctx, dea_path_create(ctx, &system, rest, &model->path));
   struct dea_load_point at_rest;
@@ -187,31 +188,6 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 {
   return DEA_CHAIN(ctx,
                    dea_model_build(ctx, sizeof **out, device, settings, prepare, destroy, out));
-}
-
-static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
-                        struct dea_load_point *out)
-{
-  return DEA_CHAIN(ctx, dea_path_solve(ctx, model->path, "axisymmetric", voltage_V,
-                                       model->max_stretch / model->disc.pre_stretch, out));
-}
-
-static const struct dea_event *limit(const struct dea_model *model)
-{
-  return dea_path_limit(model->path);
-}
-
-static const struct dea_event *passed(const struct dea_model *model)
-{
-  return dea_path_passed(model->path);
-}
-
-static dea_status path(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_path_options *options, dea_point_sink points,
-                       dea_event_sink events, void *user)
-{
-  return DEA_CHAIN(ctx, dea_path_trace(ctx, model->path, options, model->disc.pre_stretch, points,
-                                       events, user));
 }
 
 /* Element that holds R; at the electrode edge the one outside. */
@@ -260,9 +236,9 @@ const struct dea_model_type dea_model_axisymmetric = {
     .create = create,
     .destroy = destroy,
     .check = check,
-    .solve = solve,
-    .limit = limit,
-    .passed = passed,
-    .path = path,
+    .solve = dea_path_solve,
+    .limit = dea_path_limit,
+    .passed = dea_path_passed,
+    .path = dea_path_trace,
     .profile = profile,
 };

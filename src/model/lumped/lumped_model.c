@@ -9,12 +9,11 @@
 static const double pi = 3.14159265358979323846;
 
 struct dea_model {
+  struct dea_path *path;    // first
   struct dea_device device; // the disc, also of a layout that is one
   struct dea_lumped lumped;
   struct dea_lift lift;
   double modulus_Pa, rest_energy_Pa;
-  double max_stretch; // total; where a search for a snapped state gives up
-  struct dea_path *path;
   struct dea_lumped_motion motion;
 };
 
@@ -135,7 +134,6 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
   }
   DEA_TRY(ctx, dea_film_report_weight(ctx, device, "lumped"));
   model->modulus_Pa = dea_film_modulus(&model->lumped.film);
-  model->max_stretch = fmin(10 * device->pre_stretch, device->pre_stretch / device->coverage);
   struct dea_lumped_balance rest;
   dea_status status = dea_lumped_balance_eval(&model->lumped, 1, 0, &rest);
   if (status != DEA_OK) {
@@ -150,6 +148,9 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
       .point = point,
       .voltage_scale_V = dea_film_voltage_scale(&model->lumped.film),
       .ramp = model->lumped.film.electrode != NULL ? ramp : NULL,
+      .pre_stretch = device->pre_stretch,
+      .end_stretch = fmin(10, 1 / device->coverage),
+      .model = "lumped",
   };
   static const double start = 1;
   return DEA_CHAIN(ctx, dea_path_create(ctx, &system, &start, &model->path));
@@ -160,31 +161,6 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 {
   return DEA_CHAIN(ctx,
                    dea_model_build(ctx, sizeof **out, device, settings, prepare, destroy, out));
-}
-
-static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
-                        struct dea_load_point *out)
-{
-  return DEA_CHAIN(ctx, dea_path_solve(ctx, model->path, "lumped", voltage_V,
-                                       model->max_stretch / model->lumped.pre_stretch, out));
-}
-
-static const struct dea_event *limit(const struct dea_model *model)
-{
-  return dea_path_limit(model->path);
-}
-
-static const struct dea_event *passed(const struct dea_model *model)
-{
-  return dea_path_passed(model->path);
-}
-
-static dea_status path(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_path_options *options, dea_point_sink points,
-                       dea_event_sink events, void *user)
-{
-  return DEA_CHAIN(ctx, dea_path_trace(ctx, model->path, options, model->lumped.pre_stretch, points,
-                                       events, user));
 }
 
 static dea_status hold(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
@@ -277,10 +253,10 @@ const struct dea_model_type dea_model_lumped = {
     .long_name = "lumped (paper eqs 15-20)",
     .create = create,
     .destroy = destroy,
-    .solve = solve,
-    .limit = limit,
-    .passed = passed,
-    .path = path,
+    .solve = dea_path_solve,
+    .limit = dea_path_limit,
+    .passed = dea_path_passed,
+    .path = dea_path_trace,
     .hold = hold,
     .begin = begin,
     .advance = advance,
