@@ -100,10 +100,9 @@ enum cli_kind {
 };
 
 struct cli_kind_info {
-  const char *name;    // for "dea completion names NAME"; NULL: files
-  const char *outcome; // of the files; NULL: any file
-  bool folder;         // folders only
-  bool few;            // help lists them too
+  const char *name; // for "dea completion names NAME"; NULL: files
+  bool folder;      // folders only
+  bool few;         // help lists them too
   dea_status (*list)(struct dea_cli *cli, struct dea_text *out); // a line each; NULL: nothing
 };
 extern const struct cli_kind_info cli_kinds[CLI_KINDS];

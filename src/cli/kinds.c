@@ -94,7 +94,7 @@ static dea_status list_formats(struct dea_cli *cli, struct dea_text *out)
 static dea_status list_shells(struct dea_cli *cli, struct dea_text *out)
 {
   (void)cli;
-  dea_text_add(out, "bash\nzsh\nfish\n");
+  dea_text_add(out, "bash\nman\n");
   return DEA_OK;
 }
 
@@ -103,7 +103,7 @@ const struct cli_kind_info cli_kinds[CLI_KINDS] = {
     [CLI_FILE] = {.name = NULL},
     [CLI_NEW_FILE] = {.name = NULL},
     [CLI_FOLDER] = {.folder = true},
-    [CLI_DESIGN] = {.outcome = "yaml"},
+    [CLI_DESIGN] = {.name = NULL},
     [CLI_COMMAND] = {"commands", .list = list_commands},
     [CLI_EXAMPLE] = {"examples", .list = list_examples},
     [CLI_FIGURE] = {"figures", .list = list_figures},

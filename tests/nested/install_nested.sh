@@ -64,8 +64,7 @@ for what in materials examples; do
 done
 "$dea" examples frdea-4 >"$build/my.yaml"
 "$dea" check "$build/my.yaml" >/dev/null
-for file in share/man/man1/dea.1 share/bash-completion/completions/dea \
-  share/zsh/site-functions/_dea share/fish/vendor_completions.d/dea.fish; do
+for file in share/man/man1/dea.1 share/bash-completion/completions/dea; do
   [ -s "$prefix/$file" ] || { echo "$file was not installed"; exit 1; }
 done
 echo installed and used
