@@ -35,7 +35,7 @@ FALSE = [
     ("src/identify/fit.c", "-Wanalyzer-null-dereference", "lacking->", "known < rows: one lacks it"),
     ("src/job/device_fit_curves.c", "-Wanalyzer-null-dereference", "group->first",
      "each row of a curve is in a group"),
-    ("src/io/results_h5_read.c", "-Wanalyzer-null-dereference", "run->", "made before or failed"),
+    ("src/io/results_h5.c", "-Wanalyzer-null-dereference", "run->", "made before or failed"),
     ("src/result/table.c", "-Wanalyzer-null-dereference", "quantity->header",
      "a table with that kind of column has quantities"),
     ("src/study/loading.c", "-Wanalyzer-null-dereference", "settings->voltages_V",

@@ -141,6 +141,7 @@ hid_t dea_h5_file_open(struct h5 *h, bool written)
 {
   char head[1];
   size_t length;
+  h->reading = true;
   if (h->status != DEA_OK) {
     return H5I_INVALID_HID;
   }
@@ -467,5 +468,74 @@ void dea_h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t
   if (h->status == DEA_OK && H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, index, out,
                                                 size, H5P_DEFAULT) < 0) {
     dea_h5_fail(h, h->not_it);
+  }
+}
+
+// Both ways ---------------------------------------------------------------------------------------
+
+hid_t dea_h5_group(struct h5 *h, hid_t parent, const char *name)
+{
+  return h->reading ? dea_h5_group_open(h, parent, name) : dea_h5_group_get(h, parent, name);
+}
+
+long long dea_h5_int(struct h5 *h, hid_t object, const char *name, long long value, long long low,
+                     long long high)
+{
+  if (!h->reading) {
+    dea_h5_write_int(h, object, name, value);
+    return value;
+  }
+  value = dea_h5_get_int(h, object, name);
+  if (h->status == DEA_OK && (value < low || value > high)) {
+    h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: '%s' is %lld", h->path, name, value);
+  }
+  return h->status == DEA_OK ? value : low;
+}
+
+double dea_h5_real(struct h5 *h, hid_t object, const char *name, double value)
+{
+  if (h->reading) {
+    return dea_h5_get_real(h, object, name);
+  }
+  dea_h5_write_real(h, object, name, value);
+  return value;
+}
+
+void dea_h5_text(struct h5 *h, hid_t object, const char *name, char *text, size_t size)
+{
+  if (h->reading) {
+    dea_h5_get_text(h, object, name, text, size);
+  } else {
+    dea_h5_write_text(h, object, name, text);
+  }
+}
+
+char *dea_h5_long_text(struct h5 *h, hid_t group, const char *name, char *text)
+{
+  if (h->reading) {
+    return dea_h5_get_long_text(h, group, name);
+  }
+  dea_h5_write_long_text(h, group, name, text);
+  return text;
+}
+
+void dea_h5_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, hid_t file_type,
+                  size_t count, void *values, const char *unit, const char *meaning)
+{
+  if (h->reading) {
+    dea_h5_get_array(h, group, name, memory_type, count, values);
+  } else {
+    dea_h5_write_array(h, group, name, memory_type, file_type, count, values, unit, meaning);
+  }
+}
+
+void dea_h5_texts(struct h5 *h, hid_t group, const char *name, size_t count, size_t size,
+                  char *texts, const char *meaning)
+{
+  hid_t type = text_type(size, H5T_CSET_ASCII);
+  dea_h5_array(h, group, name, type, type, count, texts, "1", meaning);
+  dea_h5_close(type);
+  for (size_t i = 0; i < count && h->status == DEA_OK && h->reading; i++) {
+    texts[(i + 1) * size - 1] = '\0';
   }
 }

@@ -13,6 +13,7 @@ struct h5 {
   const char *path;   // of the file, for messages
   const char *not_it; // begins the message about a file that cannot be read; may be replaced
   dea_status status;
+  bool reading;      // from a file that was opened, not into one that was made
   H5E_auto2_t print; // what HDF5 did with errors before
   void *print_data;
 };
@@ -72,3 +73,18 @@ char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name);
 /* Number of links of a group, and the name of one of them in alphabetical order. */
 size_t dea_h5_link_count(struct h5 *h, hid_t group);
 void dea_h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t size);
+
+/* The same calls read and write: they return what is in a file that was opened, and write the value
+ * that is given into one that was made. int: a value read is within low and high, or a failure.
+ * text, values, texts: filled or written; long_text: what is read is owned by the caller. texts:
+ * [count][size], each with its end. */
+hid_t dea_h5_group(struct h5 *h, hid_t parent, const char *name);
+long long dea_h5_int(struct h5 *h, hid_t object, const char *name, long long value, long long low,
+                     long long high);
+double dea_h5_real(struct h5 *h, hid_t object, const char *name, double value);
+void dea_h5_text(struct h5 *h, hid_t object, const char *name, char *text, size_t size);
+char *dea_h5_long_text(struct h5 *h, hid_t group, const char *name, char *text);
+void dea_h5_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, hid_t file_type,
+                  size_t count, void *values, const char *unit, const char *meaning);
+void dea_h5_texts(struct h5 *h, hid_t group, const char *name, size_t count, size_t size,
+                  char *texts, const char *meaning);

@@ -64,23 +64,11 @@ void dea_results_h5_write_surface(struct h5 *h, hid_t group,
 
 // Reading ----------------------------------------------------------------------------------------
 
-/* An integer attribute within limits. */
-static long long get_within(struct h5 *h, hid_t group, const char *name, long long low,
-                            long long high)
-{
-  long long value = dea_h5_get_int(h, group, name);
-  if (h->status == DEA_OK && (value < low || value > high)) {
-    h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: '%s' of a surface is %lld", h->path,
-                         name, value);
-  }
-  return h->status == DEA_OK ? value : low;
-}
-
 static void get_block(struct h5 *h, hid_t group, struct dea_field_mesh *mesh)
 {
-  int order = (int)get_within(h, group, "order", 1, DEA_MESH_ORDER_MAX);
-  int order_z = (int)get_within(h, group, "order_z", 0, DEA_MESH_ORDER_MAX);
-  size_t count = (size_t)get_within(h, group, "count", 0, COUNT_MAX);
+  int order = (int)dea_h5_int(h, group, "order", 0, 1, DEA_MESH_ORDER_MAX);
+  int order_z = (int)dea_h5_int(h, group, "order_z", 0, 0, DEA_MESH_ORDER_MAX);
+  size_t count = (size_t)dea_h5_int(h, group, "count", 0, 0, COUNT_MAX);
   int *nodes;
   if (h->status == DEA_OK) {
     h->status = dea_field_mesh_add_block(h->ctx, mesh, order, order_z, count, &nodes);
@@ -105,9 +93,9 @@ static void get_field(struct h5 *h, hid_t fields, const char *name, struct dea_f
   snprintf(field.name, sizeof field.name, "%s", name);
   dea_h5_get_text(h, set, "unit", field.unit, sizeof field.unit);
   dea_h5_get_text(h, set, "meaning", field.meaning, sizeof field.meaning);
-  field.components = (int)get_within(h, set, "components", 1, COMPONENTS_MAX);
-  field.kind = (enum dea_mesh_kind)get_within(h, set, "kind", DEA_MESH_VALUES, DEA_MESH_AXIS);
-  field.of_cells = get_within(h, set, "of_cells", 0, 1) != 0;
+  field.components = (int)dea_h5_int(h, set, "components", 0, 1, COMPONENTS_MAX);
+  field.kind = (enum dea_mesh_kind)dea_h5_int(h, set, "kind", 0, DEA_MESH_VALUES, DEA_MESH_AXIS);
+  field.of_cells = dea_h5_int(h, set, "of_cells", 0, 0, 1) != 0;
   dea_h5_close(set);
   double *values;
   if (h->status == DEA_OK) {
@@ -144,13 +132,13 @@ void dea_results_h5_get_surface(struct h5 *h, hid_t group, const char *model,
 {
   struct dea_field_mesh *mesh = NULL;
   double voltage_V = dea_h5_get_real(h, group, "voltage_V");
-  size_t points = (size_t)get_within(h, group, "points", 0, COUNT_MAX);
+  size_t points = (size_t)dea_h5_int(h, group, "points", 0, 0, COUNT_MAX);
   size_t point = result->surface_count; // older files do not say it: one a point
   if (dea_h5_has_attribute(h, group, "point")) {
-    point = (size_t)get_within(h, group, "point", 0, COUNT_MAX);
+    point = (size_t)dea_h5_int(h, group, "point", 0, 0, COUNT_MAX);
   }
-  int fold = (int)get_within(h, group, "fold", 0, 1000);
-  int fibres = (int)get_within(h, group, "fibres", 0, 1000);
+  int fold = (int)dea_h5_int(h, group, "fold", 0, 0, 1000);
+  int fibres = (int)dea_h5_int(h, group, "fibres", 0, 0, 1000);
   if (h->status == DEA_OK) {
     h->status = dea_field_mesh_create(h->ctx, points, &mesh);
   }

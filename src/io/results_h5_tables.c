@@ -133,17 +133,6 @@ static const char *get_name(struct h5 *h, hid_t object, const char *name)
   return kept;
 }
 
-static long long get_within(struct h5 *h, hid_t object, const char *name, long long low,
-                            long long high)
-{
-  long long value = dea_h5_get_int(h, object, name);
-  if (h->status == DEA_OK && (value < low || value > high)) {
-    h->status =
-        dea_fail(h->ctx, DEA_E_IO, "%s is damaged: '%s' of a table is %lld", h->path, name, value);
-  }
-  return h->status == DEA_OK ? value : low;
-}
-
 /* Columns of a group by their numbers, in memory of their own. */
 static void get_columns(struct h5 *h, hid_t group, struct dea_result_column *columns, size_t count)
 {
@@ -151,12 +140,13 @@ static void get_columns(struct h5 *h, hid_t group, struct dea_result_column *col
     char key[DEA_NAME_SIZE];
     dea_h5_link_name(h, group, i, key, sizeof key);
     hid_t set = dea_h5_array_open(h, group, key);
-    struct dea_result_column *c = &columns[get_within(h, set, "column", 0, (long long)count - 1)];
+    struct dea_result_column *c =
+        &columns[dea_h5_int(h, set, "column", 0, 0, (long long)count - 1)];
     c->key = h->status == DEA_OK ? dea_intern(h->ctx, key) : "";
-    c->kind = (enum dea_cell_kind)get_within(h, set, "kind", DEA_CELL_NUMBER, DEA_CELL_POINTS);
-    c->list = get_within(h, set, "list", 0, 1) != 0;
-    c->null = get_within(h, set, "null", 0, 1) != 0;
-    c->hidden = (int)get_within(h, set, "hidden", 0, 255);
+    c->kind = (enum dea_cell_kind)dea_h5_int(h, set, "kind", 0, DEA_CELL_NUMBER, DEA_CELL_POINTS);
+    c->list = dea_h5_int(h, set, "list", 0, 0, 1) != 0;
+    c->null = dea_h5_int(h, set, "null", 0, 0, 1) != 0;
+    c->hidden = (int)dea_h5_int(h, set, "hidden", 0, 0, 255);
     c->title = get_name(h, set, "title");
     c->si_unit = get_name(h, set, "unit");
     c->meaning = get_name(h, set, "meaning");
@@ -237,12 +227,12 @@ static struct dea_result_table *add_table(struct h5 *h, hid_t group, const char 
       .name = get_name(h, group, "name"),
       .key = get_name(h, group, "key"),
       .title = get_name(h, group, "title"),
-      .where = (int)get_within(h, group, "where", 0, 255),
-      .one_row = get_within(h, group, "one_row", 0, 1) != 0,
+      .where = (int)dea_h5_int(h, group, "where", 0, 0, 255),
+      .one_row = dea_h5_int(h, group, "one_row", 0, 0, 1) != 0,
       .columns = columns,
       .column_count = column_count,
   };
-  size_t width = (size_t)get_within(h, group, "width", 0, DEA_RESULT_TABLE_WIDTH_MAX);
+  size_t width = (size_t)dea_h5_int(h, group, "width", 0, 0, DEA_RESULT_TABLE_WIDTH_MAX);
   struct dea_result_table *table = NULL;
   dea_h5_get_text(h, group, "quantity", quantity, sizeof quantity);
   if (h->status == DEA_OK) {
@@ -281,7 +271,7 @@ void dea_results_h5_get_table(struct h5 *h, hid_t group, const char *model,
   static const double none[DEA_RESULT_TABLE_WIDTH_MAX] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   struct dea_result_table_value empty[DEA_RESULT_TABLE_COLUMNS_MAX];
   size_t column_count = dea_h5_link_count(h, group);
-  size_t rows = (size_t)get_within(h, group, "count", 0, ROWS_MAX);
+  size_t rows = (size_t)dea_h5_int(h, group, "count", 0, 0, ROWS_MAX);
   if (h->status == DEA_OK && column_count > DEA_RESULT_TABLE_COLUMNS_MAX) {
     h->status =
         dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a table of %zu columns", h->path, column_count);
