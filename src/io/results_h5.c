@@ -326,12 +326,11 @@ static hid_t open_same(struct h5 *h, hid_t file, const struct dea_result *result
 static void exchange_surface(struct h5 *h, hid_t group, const struct entry *entry,
                              struct dea_result *result)
 {
-  if (h->reading) {
-    dea_results_h5_get_surface(h, group, entry->model, result);
-    return;
-  }
-  hid_t same = open_same(h, group, result, (size_t)entry->index);
-  dea_results_h5_write_surface(h, group, &result->surfaces[entry->index], same);
+  struct dea_surface_record read = {.point = result->surface_count};
+  memcpy(read.model, entry->model, sizeof read.model);
+  hid_t same = h->reading ? H5I_INVALID_HID : open_same(h, group, result, (size_t)entry->index);
+  dea_results_h5_surface(h, group, same, result,
+                         h->reading ? &read : &result->surfaces[entry->index]);
   dea_h5_close(same);
 }
 

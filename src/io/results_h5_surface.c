@@ -5,155 +5,134 @@
 
 enum { COUNT_MAX = 100000000, COMPONENTS_MAX = 9 };
 
-static void write_blocks(struct h5 *h, hid_t group, const struct dea_field_mesh *mesh)
+static void exchange_nodes(struct h5 *h, hid_t group, const struct dea_field_mesh *mesh,
+                           const struct dea_mesh_block *block)
 {
-  hid_t blocks = dea_h5_group_create(h, group, "blocks");
-  for (size_t b = 0; b < mesh->block_count; b++) {
-    const struct dea_mesh_block *block = &mesh->blocks[b];
+  const size_t count = block->count * (size_t)dea_mesh_block_nodes(block);
+  dea_h5_array(h, group, "nodes", H5T_NATIVE_INT, H5T_STD_I32LE, count, block->nodes, "1",
+               "points of each element, first local axis fastest");
+  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
+    if (block->nodes[i] < 0 || (size_t)block->nodes[i] >= mesh->point_count) {
+      h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a surface has no point %d", h->path,
+                           block->nodes[i]);
+    }
+  }
+}
+
+/* blocks/00, 01, ... */
+static void exchange_blocks(struct h5 *h, hid_t parent, struct dea_field_mesh *mesh)
+{
+  hid_t blocks = dea_h5_group(h, parent, "blocks");
+  const size_t count = h->reading ? dea_h5_link_count(h, blocks) : mesh->block_count;
+  for (size_t b = 0; b < count && h->status == DEA_OK; b++) {
+    struct dea_mesh_block block = {0};
     char name[24];
+    int *nodes;
     snprintf(name, sizeof name, "%02zu", b);
-    hid_t at = dea_h5_group_create(h, blocks, name);
-    dea_h5_write_int(h, at, "order", block->order);
-    dea_h5_write_int(h, at, "order_z", block->order_z);
-    dea_h5_write_int(h, at, "count", (long long)block->count);
-    dea_h5_write_array(h, at, "nodes", H5T_NATIVE_INT, H5T_STD_I32LE,
-                       block->count * (size_t)dea_mesh_block_nodes(block), block->nodes, "1",
-                       "points of each element, first local axis fastest");
-    dea_h5_close(at);
+    if (!h->reading) {
+      block = mesh->blocks[b];
+    }
+    hid_t group = dea_h5_group(h, blocks, name);
+    block.order = (int)dea_h5_int(h, group, "order", block.order, 1, DEA_MESH_ORDER_MAX);
+    block.order_z = (int)dea_h5_int(h, group, "order_z", block.order_z, 0, DEA_MESH_ORDER_MAX);
+    block.count = (size_t)dea_h5_int(h, group, "count", (long long)block.count, 0, COUNT_MAX);
+    if (h->reading && h->status == DEA_OK) {
+      h->status =
+          dea_field_mesh_add_block(h->ctx, mesh, block.order, block.order_z, block.count, &nodes);
+    }
+    if (h->status == DEA_OK) {
+      exchange_nodes(h, group, mesh, &mesh->blocks[b]);
+    }
+    dea_h5_close(group);
   }
   dea_h5_close(blocks);
 }
 
 static void write_field(struct h5 *h, hid_t fields, const struct dea_field_mesh *mesh,
-                        const struct dea_mesh_field *field)
+                        struct dea_mesh_field *field)
 {
   dea_h5_write_array(h, fields, field->name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
                      dea_mesh_field_count(mesh, field) * (size_t)field->components, field->values,
                      field->unit, field->meaning);
-  hid_t set = dea_h5_array_open(h, fields, field->name);
-  dea_h5_write_int(h, set, "components", field->components);
-  dea_h5_write_int(h, set, "kind", field->kind);
-  dea_h5_write_int(h, set, "of_cells", field->of_cells);
-  dea_h5_close(set);
 }
 
-void dea_results_h5_write_surface(struct h5 *h, hid_t group,
-                                  const struct dea_surface_record *record, hid_t same)
+static void read_field(struct h5 *h, hid_t fields, struct dea_field_mesh *mesh,
+                       const struct dea_mesh_field *field)
 {
-  const struct dea_field_mesh *mesh = record->mesh;
-  dea_h5_write_int(h, group, "point", (long long)record->point);
-  dea_h5_write_real(h, group, "voltage_V", record->voltage_V);
-  dea_h5_write_int(h, group, "points", (long long)mesh->point_count);
-  dea_h5_write_int(h, group, "fold", mesh->fold);
-  dea_h5_write_real(h, group, "symmetry_angle", mesh->symmetry_angle);
-  dea_h5_write_int(h, group, "fibres", mesh->fibres);
-  if (same >= 0) {
-    dea_h5_link(h, same, "X_m", group);
-    dea_h5_link(h, same, "blocks", group);
-  } else {
-    dea_h5_write_array(h, group, "X_m", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, 3 * mesh->point_count,
-                       mesh->X, "m", "x y z of each point in the stretched flat film");
-    write_blocks(h, group, mesh);
+  double *values;
+  if (h->status == DEA_OK) {
+    h->status = dea_field_mesh_add(h->ctx, mesh, field, &values);
   }
-  hid_t fields = dea_h5_group_create(h, group, "fields");
-  for (size_t i = 0; i < mesh->field_count; i++) {
-    write_field(h, fields, mesh, &mesh->fields[i]);
+  if (h->status == DEA_OK) {
+    dea_h5_get_array(h, fields, field->name, H5T_NATIVE_DOUBLE,
+                     dea_mesh_field_count(mesh, field) * (size_t)field->components, values);
+  }
+}
+
+static void exchange_fields(struct h5 *h, hid_t parent, struct dea_field_mesh *mesh)
+{
+  hid_t fields = dea_h5_group(h, parent, "fields");
+  const size_t count = h->reading ? dea_h5_link_count(h, fields) : mesh->field_count;
+  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
+    struct dea_mesh_field field = {.components = 1};
+    if (h->reading) {
+      dea_h5_link_name(h, fields, i, field.name, sizeof field.name);
+    } else {
+      field = mesh->fields[i];
+      write_field(h, fields, mesh, &field);
+    }
+    hid_t set = dea_h5_array_open(h, fields, field.name);
+    if (h->reading) { // else they are those of the array
+      dea_h5_get_text(h, set, "unit", field.unit, sizeof field.unit);
+      dea_h5_get_text(h, set, "meaning", field.meaning, sizeof field.meaning);
+    }
+    field.components = (int)dea_h5_int(h, set, "components", field.components, 1, COMPONENTS_MAX);
+    field.kind = (enum dea_mesh_kind)dea_h5_int(h, set, "kind", (long long)field.kind,
+                                                DEA_MESH_VALUES, DEA_MESH_AXIS);
+    field.of_cells = dea_h5_int(h, set, "of_cells", field.of_cells, 0, 1) != 0;
+    dea_h5_close(set);
+    if (h->reading) {
+      read_field(h, fields, mesh, &field);
+    }
   }
   dea_h5_close(fields);
 }
 
-// Reading ----------------------------------------------------------------------------------------
-
-static void get_block(struct h5 *h, hid_t group, struct dea_field_mesh *mesh)
+void dea_results_h5_surface(struct h5 *h, hid_t group, hid_t same, struct dea_result *result,
+                            struct dea_surface_record *record)
 {
-  int order = (int)dea_h5_int(h, group, "order", 0, 1, DEA_MESH_ORDER_MAX);
-  int order_z = (int)dea_h5_int(h, group, "order_z", 0, 0, DEA_MESH_ORDER_MAX);
-  size_t count = (size_t)dea_h5_int(h, group, "count", 0, 0, COUNT_MAX);
-  int *nodes;
-  if (h->status == DEA_OK) {
-    h->status = dea_field_mesh_add_block(h->ctx, mesh, order, order_z, count, &nodes);
+  struct dea_field_mesh none = {0}, *mesh = h->reading ? &none : record->mesh;
+  if (!h->reading || dea_h5_has_attribute(h, group, "point")) { // older files: one a point
+    record->point = (size_t)dea_h5_int(h, group, "point", (long long)record->point, 0, COUNT_MAX);
   }
-  if (h->status != DEA_OK) {
-    return;
-  }
-  count *= (size_t)dea_mesh_block_nodes(&mesh->blocks[mesh->block_count - 1]);
-  dea_h5_get_array(h, group, "nodes", H5T_NATIVE_INT, count, nodes);
-  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
-    if (nodes[i] < 0 || (size_t)nodes[i] >= mesh->point_count) {
-      h->status =
-          dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a surface has no point %d", h->path, nodes[i]);
-    }
-  }
-}
-
-static void get_field(struct h5 *h, hid_t fields, const char *name, struct dea_field_mesh *mesh)
-{
-  struct dea_mesh_field field = {.components = 1};
-  hid_t set = dea_h5_array_open(h, fields, name);
-  snprintf(field.name, sizeof field.name, "%s", name);
-  dea_h5_get_text(h, set, "unit", field.unit, sizeof field.unit);
-  dea_h5_get_text(h, set, "meaning", field.meaning, sizeof field.meaning);
-  field.components = (int)dea_h5_int(h, set, "components", 0, 1, COMPONENTS_MAX);
-  field.kind = (enum dea_mesh_kind)dea_h5_int(h, set, "kind", 0, DEA_MESH_VALUES, DEA_MESH_AXIS);
-  field.of_cells = dea_h5_int(h, set, "of_cells", 0, 0, 1) != 0;
-  dea_h5_close(set);
-  double *values;
-  if (h->status == DEA_OK) {
-    h->status = dea_field_mesh_add(h->ctx, mesh, &field, &values);
-  }
-  if (h->status == DEA_OK) {
-    dea_h5_get_array(h, fields, name, H5T_NATIVE_DOUBLE,
-                     dea_mesh_field_count(mesh, &field) * (size_t)field.components, values);
-  }
-}
-
-/* Calls a reader for each member of a subgroup. */
-static void get_each(struct h5 *h, hid_t group, const char *name, bool blocks,
-                     struct dea_field_mesh *mesh)
-{
-  hid_t parent = dea_h5_group_open(h, group, name);
-  size_t count = dea_h5_link_count(h, parent);
-  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
-    char member[32];
-    dea_h5_link_name(h, parent, i, member, sizeof member);
-    if (blocks) {
-      hid_t block = dea_h5_group_open(h, parent, member);
-      get_block(h, block, mesh);
-      dea_h5_close(block);
-    } else {
-      get_field(h, parent, member, mesh);
-    }
-  }
-  dea_h5_close(parent);
-}
-
-void dea_results_h5_get_surface(struct h5 *h, hid_t group, const char *model,
-                                struct dea_result *result)
-{
-  struct dea_field_mesh *mesh = NULL;
-  double voltage_V = dea_h5_get_real(h, group, "voltage_V");
-  size_t points = (size_t)dea_h5_int(h, group, "points", 0, 0, COUNT_MAX);
-  size_t point = result->surface_count; // older files do not say it: one a point
-  if (dea_h5_has_attribute(h, group, "point")) {
-    point = (size_t)dea_h5_int(h, group, "point", 0, 0, COUNT_MAX);
-  }
-  int fold = (int)dea_h5_int(h, group, "fold", 0, 0, 1000);
-  int fibres = (int)dea_h5_int(h, group, "fibres", 0, 0, 1000);
-  if (h->status == DEA_OK) {
-    h->status = dea_field_mesh_create(h->ctx, points, &mesh);
+  record->voltage_V = dea_h5_real(h, group, "voltage_V", record->voltage_V);
+  const size_t count =
+      (size_t)dea_h5_int(h, group, "points", (long long)mesh->point_count, 0, COUNT_MAX);
+  const int fold = (int)dea_h5_int(h, group, "fold", mesh->fold, 0, 1000);
+  const double angle = dea_h5_real(h, group, "symmetry_angle", mesh->symmetry_angle);
+  const int fibres = (int)dea_h5_int(h, group, "fibres", mesh->fibres, 0, 1000);
+  if (h->reading && h->status == DEA_OK) {
+    h->status = dea_field_mesh_create(h->ctx, count, &mesh);
   }
   if (h->status != DEA_OK) {
     return;
   }
   mesh->fold = fold;
   mesh->fibres = fibres;
-  mesh->symmetry_angle = dea_h5_get_real(h, group, "symmetry_angle");
-  dea_h5_get_array(h, group, "X_m", H5T_NATIVE_DOUBLE, 3 * points, mesh->X);
-  get_each(h, group, "blocks", true, mesh);
-  get_each(h, group, "fields", false, mesh);
-  if (h->status == DEA_OK) {
-    h->status = dea_result_add_surface(h->ctx, result, model, point, voltage_V, mesh);
+  mesh->symmetry_angle = angle;
+  if (same >= 0) {
+    dea_h5_link(h, same, "X_m", group);
+    dea_h5_link(h, same, "blocks", group);
   } else {
+    dea_h5_array(h, group, "X_m", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, 3 * count, mesh->X, "m",
+                 "x y z of each point in the stretched flat film");
+    exchange_blocks(h, group, mesh);
+  }
+  exchange_fields(h, group, mesh);
+  if (h->reading && h->status == DEA_OK) {
+    h->status = dea_result_add_surface(h->ctx, result, record->model, record->point,
+                                       record->voltage_V, mesh);
+  } else if (h->reading) {
     dea_field_mesh_destroy(h->ctx, mesh);
   }
 }

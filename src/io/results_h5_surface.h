@@ -4,10 +4,9 @@
 #include "base/h5.h"
 #include "result/result.h"
 
-/* Fills an empty group. same: a group with the same places and elements, which then are there only
- * once in the file; negative for none. */
-void dea_results_h5_write_surface(struct h5 *h, hid_t group,
-                                  const struct dea_surface_record *record, hid_t same);
-/* Adds the surface of a group to the result. */
-void dea_results_h5_get_surface(struct h5 *h, hid_t group, const char *model,
-                                struct dea_result *result);
+/* Both ways: fills an empty group by the record, or adds that of the group to the result, of the
+ * model that the record names, at its point where the group does not say one. same: a group that is
+ * written with the same places and elements, which then are there only once in the file; negative
+ * for none. */
+void dea_results_h5_surface(struct h5 *h, hid_t group, hid_t same, struct dea_result *result,
+                            struct dea_surface_record *record);
