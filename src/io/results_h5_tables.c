@@ -1,6 +1,7 @@
 #include "io/results_h5_tables.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,53 +12,70 @@ static const char *or_empty(const char *text)
   return text != NULL ? text : "";
 }
 
-// Writing ----------------------------------------------------------------------------------------
+// Values -----------------------------------------------------------------------------------------
 
-static void write_texts(struct h5 *h, hid_t group, const struct dea_result_table *table,
-                        size_t column)
+/* Longest of a column's texts with its end. */
+static size_t text_size(const struct dea_result_table *table, size_t column)
 {
-  const struct dea_result_column *c = &table->type.columns[column];
   size_t size = 1;
   for (size_t row = 0; row < table->row_count; row++) {
-    size_t length = strlen(dea_result_table_cell(table, row, column)->text) + 1;
+    const size_t length = strlen(dea_result_table_cell(table, row, column)->text) + 1;
     size = length > size ? length : size;
   }
-  size = size > TEXT_MAX ? TEXT_MAX : size;
+  return size > TEXT_MAX ? TEXT_MAX : size;
+}
+
+static void exchange_texts(struct h5 *h, hid_t group, const struct dea_result_table *table,
+                           size_t column)
+{
+  const struct dea_result_column *c = &table->type.columns[column];
+  const size_t size = h->reading ? TEXT_MAX : text_size(table, column);
   char *texts = dea_alloc(h->ctx, table->row_count, size);
   if (texts == NULL) {
     h->status = h->status == DEA_OK ? DEA_E_MEMORY : h->status;
     return;
   }
-  for (size_t row = 0; row < table->row_count; row++) {
+  for (size_t row = 0; row < table->row_count && !h->reading; row++) {
     snprintf(texts + row * size, size, "%s", dea_result_table_cell(table, row, column)->text);
   }
-  hid_t type = H5Tcopy(H5T_C_S1);
-  H5Tset_size(type, size);
-  dea_h5_write_array(h, group, c->key, type, type, table->row_count, texts, "1",
-                     or_empty(c->meaning));
-  dea_h5_close(type);
+  dea_h5_texts(h, group, c->key, table->row_count, size, texts, or_empty(c->meaning));
+  for (size_t row = 0; row < table->row_count && h->reading && h->status == DEA_OK; row++) {
+    struct dea_cell *cell = (struct dea_cell *)dea_result_table_cell(table, row, column);
+    dea_free(h->ctx, cell->text);
+    cell->text = dea_copy_text(h->ctx, texts + row * size, SIZE_MAX);
+    h->status = cell->text == NULL ? DEA_E_MEMORY : h->status;
+  }
   dea_free(h->ctx, texts);
 }
 
-static void write_numbers(struct h5 *h, hid_t group, const struct dea_result_table *table,
-                          size_t column)
+/* Values of one column; when they are read into rows that are there. */
+static void exchange_values(struct h5 *h, hid_t group, const struct dea_result_table *table,
+                            size_t column)
 {
   const struct dea_result_column *c = &table->type.columns[column];
-  size_t width = dea_result_table_values(table, column);
-  double *values = dea_alloc(h->ctx, table->row_count * width, sizeof *values);
+  const size_t width = dea_result_table_values(table, column), count = table->row_count * width;
+  if (c->kind == DEA_CELL_TEXT) {
+    exchange_texts(h, group, table, column);
+    return;
+  }
+  double *values = dea_alloc(h->ctx, count, sizeof *values);
   if (values == NULL) {
     h->status = h->status == DEA_OK ? DEA_E_MEMORY : h->status;
     return;
   }
-  for (size_t row = 0; row < table->row_count; row++) {
-    for (size_t k = 0; k < width; k++) {
-      values[row * width + k] = dea_result_table_cell(table, row, column)[k].number;
-    }
+  for (size_t k = 0; k < count && !h->reading; k++) {
+    values[k] = dea_result_table_cell(table, k / width, column)[k % width].number;
   }
-  dea_h5_write_array(h, group, c->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, table->row_count * width,
-                     values, c->si_unit != NULL ? c->si_unit : "1", or_empty(c->meaning));
+  dea_h5_array(h, group, c->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, count, values,
+               c->si_unit != NULL ? c->si_unit : "1", or_empty(c->meaning));
+  for (size_t k = 0; k < count && h->reading && h->status == DEA_OK; k++) {
+    struct dea_cell *cell = (struct dea_cell *)dea_result_table_cell(table, k / width, column);
+    cell[k % width].number = values[k];
+  }
   dea_free(h->ctx, values);
 }
+
+// Writing ----------------------------------------------------------------------------------------
 
 enum { COLUMN_NAME_SIZE = 32 };
 
@@ -84,11 +102,7 @@ static void write_column(struct h5 *h, hid_t group, const struct dea_result_tabl
                          size_t column)
 {
   const struct dea_result_column *c = &table->type.columns[column];
-  if (c->kind == DEA_CELL_TEXT) {
-    write_texts(h, group, table, column);
-  } else {
-    write_numbers(h, group, table, column);
-  }
+  exchange_values(h, group, table, column);
   hid_t set = dea_h5_array_open(h, group, c->key);
   dea_h5_write_int(h, set, "column", (long long)column);
   dea_h5_write_int(h, set, "kind", c->kind);
@@ -160,43 +174,6 @@ static void get_columns(struct h5 *h, hid_t group, struct dea_result_column *col
       h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a table lacks a column", h->path);
     }
   }
-}
-
-/* Values of one column into rows that are there. */
-static void get_values(struct h5 *h, hid_t group, const struct dea_result_table *table,
-                       size_t column)
-{
-  const char *key = table->type.columns[column].key;
-  size_t width = dea_result_table_values(table, column);
-  bool text = table->type.columns[column].kind == DEA_CELL_TEXT;
-  size_t size = text ? TEXT_MAX : width * sizeof(double);
-  char *bytes = dea_alloc(h->ctx, table->row_count, size);
-  if (bytes == NULL) {
-    h->status = DEA_E_MEMORY;
-    return;
-  }
-  hid_t type = text ? H5Tcopy(H5T_C_S1) : H5T_NATIVE_DOUBLE;
-  if (text) {
-    H5Tset_size(type, size);
-  }
-  dea_h5_get_array(h, group, key, type, table->row_count * (text ? 1 : width), bytes);
-  if (text) {
-    dea_h5_close(type);
-  }
-  for (size_t row = 0; row < table->row_count && h->status == DEA_OK; row++) {
-    struct dea_cell *cell = (struct dea_cell *)dea_result_table_cell(table, row, column);
-    if (text) {
-      bytes[(row + 1) * size - 1] = '\0';
-      dea_free(h->ctx, cell->text);
-      cell->text = dea_copy_text(h->ctx, bytes + row * size, strlen(bytes + row * size));
-      h->status = cell->text == NULL ? DEA_E_MEMORY : h->status;
-    } else {
-      for (size_t k = 0; k < width; k++) {
-        memcpy(&cell[k].number, bytes + row * size + k * sizeof(double), sizeof(double));
-      }
-    }
-  }
-  dea_free(h->ctx, bytes);
 }
 
 /* Numbers of monitors' columns in this context, in place of those of who wrote them. */
@@ -292,7 +269,7 @@ void dea_results_h5_get_table(struct h5 *h, hid_t group, const char *model,
     h->status = dea_result_table_add_row(h->ctx, table, empty);
   }
   for (size_t c = 0; c < column_count && h->status == DEA_OK; c++) {
-    get_values(h, group, table, c);
+    exchange_values(h, group, table, c);
     if (columns[c].kind == DEA_CELL_QUANTITY) {
       find_quantities(h, group, table, c);
     }
