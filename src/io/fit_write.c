@@ -31,26 +31,6 @@ static void add_temperature(struct dea_text *out, const char *indent,
   }
 }
 
-/* A range, where it is known. unit: with a space in front. */
-static void add_range(struct dea_text *out, const char *indent, const char *key,
-                      const struct dea_data_range *range, const char *unit)
-{
-  if (range->count == 2) {
-    dea_text_add(out, "%s%s: [%.10g%s, %.10g%s]\n", indent, key, range->limits[0].si, unit,
-                 range->limits[1].si, unit);
-  }
-}
-
-static void add_notes(struct dea_text *out, const char *indent, const struct dea_data_notes *notes)
-{
-  add_key(out, indent, "source", notes->source);
-  add_key(out, indent, "uncertainty", notes->uncertainty);
-  add_key(out, indent, "range", notes->range);
-  add_temperature(out, indent, &notes->temperature_K);
-  add_range(out, indent, "temperature_range", &notes->temperatures, " K");
-  add_key(out, indent, "note", notes->note);
-}
-
 /* Temperature of all tests; with a shift the reference, and the range of those that were fitted. */
 static void add_temperatures(struct dea_text *out, const char *indent, const struct dea_fit *fit)
 {
@@ -200,86 +180,34 @@ static void add_viscosity(struct dea_text *out, const struct dea_fit *fit)
   }
 }
 
-static void add_values(struct dea_text *out, const char *indent,
-                       const struct dea_data_range *values, const char *unit)
-{
-  add_range(out, indent, "value_range", values, unit);
-}
-
-static void add_given(struct dea_text *out, const char *key, const struct dea_quantity *value,
-                      const char *unit)
-{
-  if (!isnan(value->si)) {
-    dea_text_add(out, "    %s: %.10g%s\n", key, value->si, unit);
-  }
-}
-
-static void add_breakdown(struct dea_text *out, const struct dea_material_data *data)
-{
-  dea_text_add(out, data->breakdown_count > 0 ? "breakdown:\n" : "");
-  for (size_t i = 0; i < data->breakdown_count; i++) {
-    const struct dea_breakdown_set *set = &data->breakdown[i];
-    dea_text_add(out, "  - id: %s\n    at_rest: %.10g V/m\n", set->id.text,
-                 set->at_rest_V_per_m.si);
-    add_values(out, "    ", &set->values, " V/m");
-    add_given(out, "exponent", &set->exponent, "");
-    add_given(out, "thickness_exponent", &set->thickness_exponent, "");
-    add_given(out, "reference_thickness", &set->thickness_m, " m");
-    add_given(out, "weibull_shape", &set->weibull_shape, "");
-    add_given(out, "reference_area", &set->area_m2, " m^2");
-    if (set->electrode_factor.origin != DEA_DEFAULT) {
-      add_given(out, "electrode_factor", &set->electrode_factor, "");
-    }
-    add_range(out, "    ", "stretch_range", &set->range, "");
-    add_notes(out, "    ", &set->notes);
-  }
-}
-
 /* What was not fitted, as the catalogue has it. */
-static void add_rest(struct dea_text *out, const struct dea_material_data *data)
+static dea_status add_rest(struct dea_context *ctx, const struct dea_fit_file *file,
+                           struct dea_text *out)
 {
-  if (data->has_density) {
-    dea_text_add(out, "density:\n  value: %.10g kg/m^3\n", data->density.value_kg_per_m3.si);
-    add_values(out, "  ", &data->density.values, " kg/m^3");
-    add_notes(out, "  ", &data->density.notes);
+  static const char *const own[] = {"dea_material", "name", "title", "kind", "laws", "viscosity"};
+  struct dea_catalogue_entry *entry;
+  DEA_TRY(ctx, dea_catalogue_read(ctx, file->material.text, file->material.location, &entry));
+  dea_status status = DEA_OK;
+  for (size_t k = 0; k < sizeof own / sizeof own[0] && status == DEA_OK; k++) {
+    status = dea_yaml_override(ctx, entry->yaml, own[k], "null");
   }
-  dea_text_add(out, data->permittivity_count > 0 ? "permittivity:\n" : "");
-  for (size_t i = 0; i < data->permittivity_count; i++) {
-    const struct dea_permittivity_set *set = &data->permittivity[i];
-    dea_text_add(out, "  - id: %s\n    at_rest: %.10g\n    slope: %.10g\n", set->id.text,
-                 set->at_rest.si, set->slope.si);
-    add_values(out, "    ", &set->values, "");
-    add_range(out, "    ", "stretch_range", &set->range, "");
-    add_notes(out, "    ", &set->notes);
-  }
-  add_breakdown(out, data);
-  if (data->has_resistivity) {
-    dea_text_add(out, "resistivity:\n  value: %.10g ohm m\n", data->resistivity.value_ohm_m.si);
-    add_values(out, "  ", &data->resistivity.values, " ohm m");
-    add_notes(out, "  ", &data->resistivity.notes);
-  }
+  dea_yaml_write(dea_yaml_root(entry->yaml), out);
+  dea_catalogue_destroy(ctx, entry);
+  return status;
 }
 
 dea_status dea_fit_material_add(struct dea_context *ctx, const struct dea_fit *fit,
                                 struct dea_text *out)
 {
-  const struct dea_fit_file *file = fit->file;
-  struct dea_catalogue_entry *entry = NULL;
-  if (file->material.text[0] != '\0') {
-    DEA_TRY(ctx, dea_catalogue_read(ctx, file->material.text, file->material.location, &entry));
-  }
   dea_text_add(out,
                "# Written by dea fit. For dea to find it, DEA_MATERIALS names the folder that this "
                "file is in.\ndea_material: 1\nname: %s\n",
-               file->head.name.text);
-  add_key(out, "", "title", file->head.title.text);
+               fit->file->head.name.text);
+  add_key(out, "", "title", fit->file->head.title.text);
   dea_text_add(out, "kind: elastomer\n");
   add_law(out, fit);
   add_viscosity(out, fit);
-  if (entry != NULL) {
-    add_rest(out, &entry->data);
-  }
-  dea_catalogue_destroy(ctx, entry);
+  DEA_TRY(ctx, fit->file->material.text[0] != '\0' ? add_rest(ctx, fit->file, out) : DEA_OK);
   return out->failed ? DEA_E_MEMORY : DEA_OK;
 }
 
