@@ -1,10 +1,6 @@
 #include "cli/cli.h"
 #include "cli/print_fit.h"
-#include "identify/fit_tests.h"
-#include "io/breakdown_write.h"
-#include "io/device_fit_files.h"
 #include "io/fit_files.h"
-#include "io/life_write.h"
 #include "job/device_fit_run.h"
 
 struct request {
@@ -14,80 +10,43 @@ struct request {
   struct dea_plot_format format;
 };
 
-/* Ends what was printed of a fit, if there is one, and reports. */
-static int finish(struct dea_cli *cli, const struct request *request, bool printed,
-                  dea_status status)
-{
-  if (printed && !request->json && status == DEA_OK) {
-    printf("\nwritten to %s\n", request->output);
-  }
-  fflush(stdout);
-  return cli_report(cli, status);
-}
-
-static dea_status fit_file(struct dea_cli *cli, const struct request *request,
-                           struct dea_fit_file **file, struct dea_fit_tests *tests,
-                           struct dea_fit **fit)
-{
-  struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, dea_fit_file_read(ctx, request->file, file));
-  DEA_TRY(ctx, dea_fit_tests_read(ctx, *file, tests));
-  DEA_TRY(ctx, dea_fit_run(ctx, *file, tests->series, tests->count, &request->options, fit));
-  DEA_TRY(ctx, dea_fit_folder(ctx, *file, request->output, request->force));
-  return dea_fit_write(ctx, *fit, cli->command_line, &request->format, request->output);
-}
-
-static int fit_material(struct dea_cli *cli, const struct request *request)
-{
-  struct dea_fit_file *file = NULL;
-  struct dea_fit_tests tests = {.count = 0};
-  struct dea_fit *fit = NULL;
-  dea_status status = fit_file(cli, request, &file, &tests, &fit);
-  if (fit != NULL && request->json) {
-    cli_print_json(dea_fit_json(fit, cli->command_line));
-  } else if (fit != NULL) {
-    cli_print_fit(fit);
-  }
-  const int code = finish(cli, request, fit != NULL, status);
-  dea_fit_destroy(cli->ctx, fit);
-  dea_fit_tests_free(&tests);
-  dea_fit_file_destroy(cli->ctx, file);
-  return code;
-}
-
-/* fit_KIND: reads a file of a kind, fits, writes the folder and prints what there is. run:
- * fits *file into fit. */
-#define FIT_KIND(kind, run)                                                                        \
+/* fit_KIND: reads a file of a kind, fits (`run`: *file into fit), writes the folder and prints what
+ * there is. */
+#define FIT_KIND(kind, its_file, its_fit, run)                                                     \
   static dea_status fit_##kind##_file(struct dea_cli *cli, const struct request *request,          \
-                                      struct dea_##kind##_file **file,                             \
-                                      struct dea_##kind##_fit **fit)                               \
+                                      struct dea_##its_file **file, struct dea_##its_fit **fit)    \
   {                                                                                                \
     struct dea_context *ctx = cli->ctx;                                                            \
-    DEA_TRY(ctx, dea_##kind##_file_read(ctx, request->file, file));                                \
+    const struct dea_fit_folder to = {request->output, request->force, cli->command_line,          \
+                                      &request->format};                                           \
+    DEA_TRY(ctx, dea_##its_file##_read(ctx, request->file, file));                                 \
     DEA_TRY(ctx, run);                                                                             \
-    DEA_TRY(ctx, dea_##kind##_fit_folder(ctx, *file, request->output, request->force));            \
-    return dea_##kind##_fit_write(ctx, *fit, cli->command_line, &request->format,                  \
-                                  request->output);                                                \
+    return dea_##its_fit##_write(ctx, *fit, &to);                                                  \
   }                                                                                                \
   static int fit_##kind(struct dea_cli *cli, const struct request *request)                        \
   {                                                                                                \
-    struct dea_##kind##_file *file = NULL;                                                         \
-    struct dea_##kind##_fit *fit = NULL;                                                           \
+    struct dea_##its_file *file = NULL;                                                            \
+    struct dea_##its_fit *fit = NULL;                                                              \
     const dea_status status = fit_##kind##_file(cli, request, &file, &fit);                        \
     cli_progress_clear(cli);                                                                       \
     if (fit != NULL && request->json) {                                                            \
-      cli_print_json(dea_##kind##_fit_json(fit, cli->command_line));                               \
+      cli_print_json(dea_##its_fit##_json(fit, cli->command_line));                                \
     } else if (fit != NULL) {                                                                      \
-      cli_print_##kind##_fit(fit);                                                                 \
+      cli_print_##its_fit(fit);                                                                    \
+      if (status == DEA_OK) {                                                                      \
+        printf("\nwritten to %s\n", request->output);                                              \
+      }                                                                                            \
     }                                                                                              \
-    const int code = finish(cli, request, fit != NULL, status);                                    \
-    dea_##kind##_fit_destroy(cli->ctx, fit);                                                       \
-    dea_##kind##_file_destroy(cli->ctx, file);                                                     \
+    fflush(stdout);                                                                                \
+    const int code = cli_report(cli, status);                                                      \
+    dea_##its_fit##_destroy(cli->ctx, fit);                                                        \
+    dea_##its_file##_destroy(cli->ctx, file);                                                      \
     return code;                                                                                   \
   }
-FIT_KIND(device, dea_device_fit_run(ctx, *file, &request->options, fit))
-FIT_KIND(breakdown, dea_breakdown_fit_run(ctx, *file, fit))
-FIT_KIND(life, dea_life_fit_run(ctx, *file, fit))
+FIT_KIND(material, fit_file, fit, dea_fit_file_run(ctx, *file, &request->options, fit))
+FIT_KIND(device, device_file, device_fit, dea_device_fit_run(ctx, *file, &request->options, fit))
+FIT_KIND(breakdown, breakdown_file, breakdown_fit, dea_breakdown_fit_run(ctx, *file, fit))
+FIT_KIND(life, life_file, life_fit, dea_life_fit_run(ctx, *file, fit))
 
 /* Kinds of fit files other than that of a material, by the key that tells them. */
 static const struct {

@@ -642,6 +642,7 @@ void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit)
     dea_lsq_statistics_free(&fit->statistics);
     dea_lsq_free(&fit->least_squares);
     dea_arena_free(&fit->memory);
+    dea_arena_free(&fit->tests);
     dea_free(ctx, fit);
   }
 }

@@ -91,7 +91,7 @@ struct dea_fit {
   struct dea_fit_next next[DEA_FIT_NEXT_MAX]; // the best first
   size_t next_count;
   double stretch_min, stretch_max, I1_max; // of the rows that were fitted
-  struct dea_arena memory;
+  struct dea_arena memory, tests;          // tests: the series, where they were read from the file
 };
 
 struct dea_fit_options {
@@ -103,6 +103,10 @@ struct dea_fit_options {
 dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
                        const struct dea_fit_series *series, size_t series_count,
                        const struct dea_fit_options *options, struct dea_fit **out);
+/* The same of the tests that the file names, in CSV files from its folder; what is wrong with them
+ * becomes findings with their places, DEA_E_IO then, or DEA_E_DESIGN. */
+dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file,
+                            const struct dea_fit_options *options, struct dea_fit **out);
 void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit);
 
 // Parts -------------------------------------------------------------------------------------------

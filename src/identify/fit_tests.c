@@ -1,4 +1,4 @@
-#include "identify/fit_tests.h"
+#include "identify/fit.h"
 
 #include "base/csv_line.h"
 #include "base/file.h"
@@ -82,24 +82,31 @@ static dea_status read_test(struct dea_arena *arena, const struct dea_fit_file *
   return status;
 }
 
-dea_status dea_fit_tests_read(struct dea_context *ctx, const struct dea_fit_file *file,
-                              struct dea_fit_tests *out)
+/* All of them, for all that is wrong. */
+static dea_status read_tests(struct dea_arena *arena, const struct dea_fit_file *file,
+                             struct dea_fit_series *series)
 {
-  dea_status worst = DEA_OK;
-  *out = (struct dea_fit_tests){.count = file->test_count, .memory = {.ctx = ctx}};
-  for (size_t i = 0; i < file->test_count; i++) { // all of them, for all that is wrong
-    dea_status status = read_test(&out->memory, file, &file->tests[i], &out->series[i]);
+  dea_status worst = series != NULL ? DEA_OK : DEA_E_MEMORY;
+  for (size_t i = 0; i < file->test_count && series != NULL; i++) {
+    dea_status status = read_test(arena, file, &file->tests[i], &series[i]);
     worst = status != DEA_OK ? status : worst;
   }
-  if (worst != DEA_OK) {
-    dea_fit_tests_free(out);
-    return dea_fail_chain(ctx, worst, __func__, __FILE__, __LINE__);
-  }
-  return DEA_OK;
+  return worst;
 }
 
-void dea_fit_tests_free(struct dea_fit_tests *tests)
+dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file,
+                            const struct dea_fit_options *options, struct dea_fit **out)
 {
-  dea_arena_free(&tests->memory);
-  *tests = (struct dea_fit_tests){0};
+  struct dea_arena tests = {.ctx = ctx};
+  struct dea_fit_series *series = dea_arena_alloc(&tests, file->test_count, sizeof *series);
+  *out = NULL;
+  dea_status status = read_tests(&tests, file, series);
+  status =
+      status == DEA_OK ? dea_fit_run(ctx, file, series, file->test_count, options, out) : status;
+  if (status != DEA_OK) {
+    dea_arena_free(&tests);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  (*out)->tests = tests;
+  return DEA_OK;
 }

@@ -1,5 +1,3 @@
-#include "io/breakdown_write.h"
-
 #include "base/file.h"
 #include "base/version.h"
 #include "base/write_file.h"
@@ -72,7 +70,6 @@ static dea_status add_material(struct dea_context *ctx, const struct dea_breakdo
   struct dea_catalogue_entry *entry;
   struct dea_text law = {.ctx = ctx};
   DEA_TRY(ctx, dea_catalogue_read(ctx, file->material.text, file->material.location, &entry));
-  void *before = dea_c_locale_enter();
   add_law(&law, fit);
   dea_status status = law.failed ? DEA_E_MEMORY : DEA_OK;
   status =
@@ -85,7 +82,6 @@ static dea_status add_material(struct dea_context *ctx, const struct dea_breakdo
     dea_yaml_write(dea_yaml_root(entry->yaml), out);
     status = out->failed ? DEA_E_MEMORY : DEA_OK;
   }
-  dea_c_locale_leave(before);
   dea_text_free(&law);
   dea_catalogue_destroy(ctx, entry);
   return status;
@@ -158,28 +154,21 @@ static dea_status draw(struct dea_context *ctx, const struct dea_breakdown_fit *
   return status;
 }
 
-dea_status dea_breakdown_fit_folder(struct dea_context *ctx, const struct dea_breakdown_file *file,
-                                    const char *directory, bool force)
+dea_status dea_breakdown_fit_write(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
+                                   const struct dea_fit_folder *to)
 {
   static const char *const figures[] = {"fit"};
-  return dea_fit_folder_create(ctx, directory, file->head.name.text, figures, 1, force);
-}
-
-dea_status dea_breakdown_fit_write(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
-                                   const char *command, const struct dea_plot_format *format,
-                                   const char *directory)
-{
   struct dea_text csv = {.ctx = ctx}, material = {.ctx = ctx};
   void *before = dea_c_locale_enter();
   add_rows(&csv, fit);
-  dea_c_locale_leave(before);
   dea_status status = add_material(ctx, fit, &material);
-  if (status == DEA_OK) {
-    status = dea_fit_folder_write(ctx, directory, fit->file->head.name.text, &material, &csv,
-                                  dea_breakdown_fit_json(fit, command));
-  }
+  dea_c_locale_leave(before);
+  status = status == DEA_OK
+               ? dea_fit_folder_write(ctx, to, fit->file->head.name.text, figures, 1, &material,
+                                      &csv, dea_breakdown_fit_json(fit, to->command))
+               : status;
   dea_text_free(&csv);
   dea_text_free(&material);
   DEA_TRY(ctx, status);
-  return draw(ctx, fit, format, directory);
+  return draw(ctx, fit, to->format, to->path);
 }

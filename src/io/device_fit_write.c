@@ -1,7 +1,6 @@
 #include "base/write_file.h"
 #include "figures/fit_figures.h"
 #include "io/csv.h"
-#include "io/device_fit_files.h"
 #include "io/fit_common.h"
 
 #include <math.h>
@@ -121,11 +120,13 @@ json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *comman
 
 // The folder --------------------------------------------------------------------------------------
 
-dea_status dea_device_fit_folder(struct dea_context *ctx, const struct dea_device_file *file,
-                                 const char *directory, bool force)
+/* NAME.yaml, fit.csv and fit.json. */
+static dea_status write_texts(struct dea_context *ctx, const struct dea_device_fit *fit,
+                              const struct dea_fit_folder *to)
 {
   const size_t count = 2 * (size_t)dea_column_count(ctx);
   struct dea_arena memory = {.ctx = ctx};
+  struct dea_text csv = {.ctx = ctx};
   char(*names)[64] = dea_arena_alloc(&memory, count, sizeof *names);
   const char **figures = dea_arena_alloc(&memory, count, sizeof *figures);
   for (size_t c = 0; figures != NULL && c < count; c++) {
@@ -133,36 +134,27 @@ dea_status dea_device_fit_folder(struct dea_context *ctx, const struct dea_devic
              dea_column_at(ctx, (int)(c / 2))->key);
     figures[c] = names[c];
   }
-  dea_status status = dea_arena_status(&memory);
-  status = status == DEA_OK
-               ? dea_fit_folder_create(ctx, directory, file->head.name.text, figures, count, force)
-               : status;
-  dea_arena_free(&memory);
-  return status;
-}
-
-static dea_status write_texts(struct dea_context *ctx, const struct dea_device_fit *fit,
-                              const char *command, const char *directory)
-{
-  struct dea_text csv = {.ctx = ctx};
   dea_text_add(&csv, "curve,quantity,use,line,fitted,V (kV),tip depth (mm),measured,measured std,"
                      "model,model std,as designed,unit,time (s)\n");
   for (size_t c = 0; c < fit->curve_count; c++) {
     add_rows(&csv, &fit->curves[c]);
   }
-  dea_status status = dea_fit_folder_write(ctx, directory, fit->file->head.name.text, &fit->design,
-                                           &csv, dea_device_fit_json(fit, command));
+  dea_status status = dea_arena_status(&memory);
+  status = status == DEA_OK
+               ? dea_fit_folder_write(ctx, to, fit->file->head.name.text, figures, count,
+                                      &fit->design, &csv, dea_device_fit_json(fit, to->command))
+               : status;
   dea_text_free(&csv);
+  dea_arena_free(&memory);
   return status;
 }
 
 dea_status dea_device_fit_write(struct dea_context *ctx, const struct dea_device_fit *fit,
-                                const char *command, const struct dea_plot_format *format,
-                                const char *directory)
+                                const struct dea_fit_folder *to)
 {
   void *before = dea_c_locale_enter();
-  dea_status status = write_texts(ctx, fit, command, directory);
+  dea_status status = write_texts(ctx, fit, to);
   dea_c_locale_leave(before);
   DEA_TRY(ctx, status);
-  return dea_device_fit_draw(ctx, fit, format, directory);
+  return dea_device_fit_draw(ctx, fit, to->format, to->path);
 }

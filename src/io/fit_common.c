@@ -98,30 +98,29 @@ void dea_fit_json_advice(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], s
 
 // The folder --------------------------------------------------------------------------------------
 
-dea_status dea_fit_folder_create(struct dea_context *ctx, const char *directory, const char *name,
-                                 const char *const figures[], size_t figure_count, bool force)
+static dea_status create(struct dea_context *ctx, const struct dea_fit_folder *to, const char *yaml,
+                         const char *const figures[], size_t figure_count)
 {
-  char file[DEA_NAME_SIZE + 8];
-  snprintf(file, sizeof file, "%.63s.yaml", name);
-  DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, directory, file, force));
-  DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, directory, "fit.json", force));
-  DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, directory, "fit.csv", force));
-  for (size_t k = 0; k < figure_count; k++) {
-    DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, directory, figures[k], force));
+  const char *const files[] = {yaml, "fit.json", "fit.csv"};
+  for (size_t k = 0; k < 3 + figure_count; k++) {
+    DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, to->path, k < 3 ? files[k] : figures[k - 3],
+                                            to->force));
   }
-  return dea_folder_create(ctx, directory);
+  return dea_folder_create(ctx, to->path);
 }
 
-dea_status dea_fit_folder_write(struct dea_context *ctx, const char *directory, const char *name,
+dea_status dea_fit_folder_write(struct dea_context *ctx, const struct dea_fit_folder *to,
+                                const char *name, const char *const figures[], size_t figure_count,
                                 const struct dea_text *yaml, const struct dea_text *csv,
                                 json_t *root)
 {
   char file[DEA_NAME_SIZE + 8], *json = NULL;
   snprintf(file, sizeof file, "%.63s.yaml", name);
   dea_status status = dea_json_text(ctx, root, &json);
-  status = status == DEA_OK && yaml != NULL ? dea_text_write(ctx, yaml, directory, file) : status;
-  status = status == DEA_OK ? dea_text_write(ctx, csv, directory, "fit.csv") : status;
-  status = status == DEA_OK ? dea_text_file_write(ctx, directory, "fit.json", json) : status;
+  status = status == DEA_OK ? create(ctx, to, file, figures, figure_count) : status;
+  status = status == DEA_OK && yaml != NULL ? dea_text_write(ctx, yaml, to->path, file) : status;
+  status = status == DEA_OK ? dea_text_write(ctx, csv, to->path, "fit.csv") : status;
+  status = status == DEA_OK ? dea_text_file_write(ctx, to->path, "fit.json", json) : status;
   dea_free(ctx, json);
   return status;
 }

@@ -1,10 +1,7 @@
 /* What the files of a fit of a material and of a device have in common. */
 #pragma once
 
-#include "base/arena.h"
-#include "base/json.h"
-#include "identify/fit.h"
-#include "identify/weibull.h"
+#include "io/fit_files.h"
 
 enum { DEA_FIT_JSON_SCHEMA = 1 };
 
@@ -27,11 +24,9 @@ void dea_fit_json_advice(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], s
                          const char *next_key, const char *word, const struct dea_fit_next *next,
                          size_t next_count);
 
-/* Makes the folder and takes fit.json, fit.csv, NAME.yaml and the figures of an earlier fit out of
- * it; DEA_E_IO when it has one and force is not set. */
-dea_status dea_fit_folder_create(struct dea_context *ctx, const char *directory, const char *name,
-                                 const char *const figures[], size_t figure_count, bool force);
-/* Writes NAME.yaml (yaml NULL: none), fit.csv and fit.json; root: taken. */
-dea_status dea_fit_folder_write(struct dea_context *ctx, const char *directory, const char *name,
+/* Makes the folder, takes fit.json, fit.csv, NAME.yaml and the figures of an earlier fit out of it,
+ * and writes NAME.yaml (yaml NULL: none), fit.csv and fit.json; root: taken. */
+dea_status dea_fit_folder_write(struct dea_context *ctx, const struct dea_fit_folder *to,
+                                const char *name, const char *const figures[], size_t figure_count,
                                 const struct dea_text *yaml, const struct dea_text *csv,
                                 json_t *root);

@@ -5,7 +5,6 @@
 #include "figures/fit_figures.h"
 #include "io/csv.h"
 #include "io/fit_common.h"
-#include "io/fit_files.h"
 #include "material/catalogue.h"
 
 #include <math.h>
@@ -196,8 +195,8 @@ static dea_status add_rest(struct dea_context *ctx, const struct dea_fit_file *f
   return status;
 }
 
-dea_status dea_fit_material_add(struct dea_context *ctx, const struct dea_fit *fit,
-                                struct dea_text *out)
+static dea_status add_material(struct dea_context *ctx, const struct dea_fit *fit,
+                               struct dea_text *out)
 {
   dea_text_add(out,
                "# Written by dea fit. For dea to find it, DEA_MATERIALS names the folder that this "
@@ -324,38 +323,24 @@ json_t *dea_fit_json(const struct dea_fit *fit, const char *command)
 
 /* ---- the folder ---- */
 
-dea_status dea_fit_folder(struct dea_context *ctx, const struct dea_fit_file *file,
-                          const char *directory, bool force)
+dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit,
+                         const struct dea_fit_folder *to)
 {
   static const char *const figures[] = {"fit", "fit_time"};
-  return dea_fit_folder_create(ctx, directory, file->head.name.text, figures, 2, force);
-}
-
-static dea_status write_texts(struct dea_context *ctx, const struct dea_fit *fit,
-                              const char *command, const char *directory)
-{
   struct dea_text csv = {.ctx = ctx}, material = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
   dea_text_add(&csv, "test,use,line,time (s),stretch,stress (kPa),stress std (kPa),fit (kPa),"
                      "fit std (kPa),residual (kPa)\n");
   for (size_t s = 0; s < fit->series_count; s++) {
     add_rows(&csv, &fit->curves[s]);
   }
-  dea_status status = dea_fit_material_add(ctx, fit, &material);
-  if (status == DEA_OK) {
-    status = dea_fit_folder_write(ctx, directory, fit->file->head.name.text, &material, &csv,
-                                  dea_fit_json(fit, command));
-  }
+  dea_status status = add_material(ctx, fit, &material);
+  status = status == DEA_OK ? dea_fit_folder_write(ctx, to, fit->file->head.name.text, figures, 2,
+                                                   &material, &csv, dea_fit_json(fit, to->command))
+                            : status;
   dea_text_free(&material);
   dea_text_free(&csv);
-  return status;
-}
-
-dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit, const char *command,
-                         const struct dea_plot_format *format, const char *directory)
-{
-  void *before = dea_c_locale_enter();
-  dea_status status = write_texts(ctx, fit, command, directory);
   dea_c_locale_leave(before);
   DEA_TRY(ctx, status);
-  return dea_fit_draw(ctx, fit, format, directory);
+  return dea_fit_draw(ctx, fit, to->format, to->path);
 }

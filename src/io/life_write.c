@@ -1,5 +1,3 @@
-#include "io/life_write.h"
-
 #include "base/csv_line.h"
 #include "base/write_file.h"
 #include "figures/weibull_picture.h"
@@ -71,13 +69,6 @@ json_t *dea_life_fit_json(const struct dea_life_fit *fit, const char *command)
 
 /* ---- the folder ---- */
 
-dea_status dea_life_fit_folder(struct dea_context *ctx, const struct dea_life_file *file,
-                               const char *directory, bool force)
-{
-  static const char *const figures[] = {"fit"};
-  return dea_fit_folder_create(ctx, directory, file->head.name.text, figures, 1, force);
-}
-
 static dea_status draw(struct dea_context *ctx, const struct dea_life_fit *fit,
                        const struct dea_plot_format *format, const char *directory)
 {
@@ -100,16 +91,16 @@ static dea_status draw(struct dea_context *ctx, const struct dea_life_fit *fit,
 }
 
 dea_status dea_life_fit_write(struct dea_context *ctx, const struct dea_life_fit *fit,
-                              const char *command, const struct dea_plot_format *format,
-                              const char *directory)
+                              const struct dea_fit_folder *to)
 {
+  static const char *const figures[] = {"fit"};
   struct dea_text csv = {.ctx = ctx};
   void *before = dea_c_locale_enter();
   add_rows(&csv, fit);
   dea_c_locale_leave(before);
-  dea_status status = dea_fit_folder_write(ctx, directory, fit->file->head.name.text, NULL, &csv,
-                                           dea_life_fit_json(fit, command));
+  dea_status status = dea_fit_folder_write(ctx, to, fit->file->head.name.text, figures, 1, NULL,
+                                           &csv, dea_life_fit_json(fit, to->command));
   dea_text_free(&csv);
   DEA_TRY(ctx, status);
-  return fit->has_law ? draw(ctx, fit, format, directory) : DEA_OK;
+  return fit->has_law ? draw(ctx, fit, to->format, to->path) : DEA_OK;
 }
