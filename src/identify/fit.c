@@ -478,30 +478,6 @@ static double misfit(const struct work *w)
   return sqrt(squares / (double)w->rows);
 }
 
-/* Growth of chi2, in units of what one standard uncertainty should give, with p_j moved by it. */
-static dea_status growth(struct dea_context *ctx, const struct dea_lsq_problem *problem,
-                         const struct dea_lsq_fit *fit, size_t j, double by, double unit,
-                         double *out)
-{
-  double p[DEA_LSQ_PARAMS_MAX];
-  bool held[DEA_LSQ_PARAMS_MAX];
-  struct dea_lsq_fit moved;
-  memcpy(p, fit->p, fit->params * sizeof *p);
-  memcpy(held, fit->held, fit->params * sizeof *held);
-  p[j] += by;
-  held[j] = true;
-  *out = NAN;
-  dea_status status = dea_lsq_solve(ctx, problem, p, held, &moved);
-  if (status == DEA_OK) {
-    *out = sqrt(fmax(0, moved.chi2 - fit->chi2) / unit);
-    dea_lsq_free(&moved);
-  } else if (status != DEA_E_MEMORY && status != DEA_E_INTERRUPTED) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
-}
-
 dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
                            const struct dea_lsq_fit *fit,
                            const struct dea_lsq_statistics *statistics, size_t j, bool logarithmic,
@@ -512,10 +488,12 @@ dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem
     return DEA_OK;
   }
   const double unit = (std / naive) * (std / naive); // correlated, widened
-  double below, above;
-  DEA_TRY(ctx, growth(ctx, problem, fit, j, -std, unit, &below));
-  DEA_TRY(ctx, growth(ctx, problem, fit, j, std, unit, &above));
-  value->bends = !(fabs(below - 1) < 0.15 && fabs(above - 1) < 0.15);
+  for (int sign = -1; sign <= 1; sign += 2) {
+    double from[DEA_LSQ_PARAMS_MAX], growth;
+    memcpy(from, fit->p, fit->params * sizeof *from);
+    DEA_TRY(ctx, dea_lsq_growth(ctx, problem, fit, j, fit->p[j] + sign * std, unit, from, &growth));
+    value->bends = value->bends || !(fabs(growth) < 0.15);
+  }
   if (value->bends || all) {
     struct dea_lsq_interval interval;
     DEA_TRY(ctx, dea_lsq_profile(ctx, problem, fit, j, 1, unit, 0.7 * std, &interval));

@@ -25,46 +25,21 @@ struct dea_fit_parameter_text {
 /* Rows of both tables: the first keys of a file ... */
 #define DEA_FIT_HEAD_AT(member) offsetof(struct dea_fit_head, member)
 #define DEA_FIT_HEAD_FIELDS(name_doc, name_example, title_absent, title_doc, title_example)        \
-  {.key = "dea_fit",                                                                               \
-   .kind = DEA_FIELD_INTEGER,                                                                      \
-   .offset = DEA_FIT_HEAD_AT(version),                                                             \
-   .unit = "1",                                                                                    \
-   .min = DEA_FIT_VERSION,                                                                         \
-   .max = DEA_FIT_VERSION,                                                                         \
-   .required = true,                                                                               \
-   .doc = "version of the format",                                                                 \
-   .example = "1"},                                                                                \
-      {.key = "name",                                                                              \
-       .kind = DEA_FIELD_LABEL,                                                                    \
-       .offset = DEA_FIT_HEAD_AT(name),                                                            \
-       .required = true,                                                                           \
-       .doc = name_doc,                                                                            \
-       .example = name_example},                                                                   \
-      {.key = "title",                                                                             \
-       .kind = DEA_FIELD_LABEL,                                                                    \
-       .offset = DEA_FIT_HEAD_AT(title),                                                           \
-       .absent_text = title_absent,                                                                \
-       .doc = title_doc,                                                                           \
-       .example = title_example},                                                                  \
-  {                                                                                                \
-    .key = "source", .kind = DEA_FIELD_LABEL, .offset = DEA_FIT_HEAD_AT(source),                   \
-    .absent_text = "none", .doc = "where the measurements come from",                              \
-    .example = "our lab, June 2026"                                                                \
-  }
+  DEA_INTEGER_ROW("dea_fit", DEA_FIT_HEAD_AT(version), "1", "version of the format",               \
+                  .min = DEA_FIT_VERSION, .max = DEA_FIT_VERSION, .required = true),               \
+      DEA_LABEL_ROW("name", DEA_FIT_HEAD_AT(name), name_example, name_doc, .required = true),      \
+      DEA_LABEL_ROW("title", DEA_FIT_HEAD_AT(title), title_example, title_doc,                     \
+                    .absent_text = title_absent),                                                  \
+      DEA_LABEL_ROW("source", DEA_FIT_HEAD_AT(source), "our lab, June 2026",                       \
+                    "where the measurements come from", .absent_text = "none")
 
 /* ... and those of a parameter: a text, and whether it keeps its start. */
 #define DEA_FIT_PARAMETER_FIELD(word, meaning, shown, without)                                     \
-  {                                                                                                \
-    .key = #word, .kind = DEA_FIELD_LABEL,                                                         \
-    .offset = offsetof(struct dea_fit_parameter_text, word), .doc = meaning, .example = shown,     \
-    .absent_text = without                                                                         \
-  }
+  DEA_LABEL_ROW(#word, offsetof(struct dea_fit_parameter_text, word), shown, meaning,              \
+                .absent_text = without)
 #define DEA_FIT_FIXED_FIELD                                                                        \
-  {                                                                                                \
-    .key = "fixed", .kind = DEA_FIELD_CHOICE,                                                      \
-    .offset = offsetof(struct dea_fit_parameter_text, fixed), .choices = dea_no_yes,               \
-    .default_text = "no", .doc = "whether it keeps its start", .example = "yes"                    \
-  }
+  DEA_CHOICE_ROW("fixed", offsetof(struct dea_fit_parameter_text, fixed), dea_no_yes, "yes",       \
+                 "whether it keeps its start", .default_text = "no")
 
 /* Whether a file has a key, by which the kinds of fit files are told apart: `design` of a device,
  * `breakdown` of breakdown tests, `life` of life tests, none of a material. Status as of reading.

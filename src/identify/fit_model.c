@@ -364,6 +364,7 @@ struct residuals {
   const struct dea_fit_rows *rows;
   struct dea_coupon_shares *shares; // [rows->count]
   double *stress;                   // [largest series]
+  bool bare;                        // stresses themselves, of any series
 };
 
 static bool is_left_out(const struct dea_fit_rows *rows, size_t s, size_t i)
@@ -378,12 +379,13 @@ static dea_status residual(void *user, const double *p, double *r)
   size_t n = 0;
   for (size_t s = 0; s < w->rows->count; s++) {
     const struct dea_fit_series *series = &w->rows->series[s];
-    if (!dea_fit_series_used(series)) {
+    if (!w->bare && !dea_fit_series_used(series)) {
       continue;
     }
     dea_fit_model_material(w->model, p, series->test, &material);
-    dea_status status = dea_coupon_stress(&material, &series->coupon, &w->shares[s], w->stress);
-    if (status != DEA_OK) {
+    dea_status status =
+        dea_coupon_stress(&material, &series->coupon, &w->shares[s], w->bare ? r : w->stress);
+    if (status != DEA_OK || w->bare) {
       return status;
     }
     for (size_t i = 0; i < series->rows; i++) {
@@ -402,38 +404,18 @@ static dea_status residual(void *user, const double *p, double *r)
   return DEA_OK;
 }
 
-static void set_bounds(const struct dea_fit_model *model, double *memory,
-                       struct dea_lsq_problem *out)
-{
-  double *low = memory, *high = memory + DEA_LSQ_PARAMS_MAX;
-  double *scale = high + DEA_LSQ_PARAMS_MAX;
-  for (size_t j = 0; j < model->count; j++) {
-    low[j] = model->params[j].low;
-    high[j] = model->params[j].high;
-    scale[j] = model->params[j].scale;
-  }
-  out->params = model->count;
-  out->low = low;
-  out->high = high;
-  out->scale = scale;
-}
-
-dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_model *model,
-                                 const struct dea_fit_rows *rows, struct dea_lsq_problem *out)
+static dea_status build_problem(struct dea_arena *arena, const struct dea_fit_model *model,
+                                const struct dea_fit_rows *rows, bool bare,
+                                struct dea_lsq_problem *out)
 {
   size_t largest = 0;
-  *out = (struct dea_lsq_problem){.residual = residual};
   for (size_t s = 0; s < rows->count; s++) {
     largest = rows->series[s].rows > largest ? rows->series[s].rows : largest;
-    for (size_t i = 0; i < rows->series[s].rows && dea_fit_series_used(&rows->series[s]); i++) {
-      out->rows += is_left_out(rows, s, i) ? 0U : 1U;
-    }
-  }
-  for (size_t j = 0; j < model->count; j++) {
-    out->rows += isnan(model->params[j].prior) ? 0U : 1U;
   }
   struct residuals *w = dea_arena_alloc(arena, 1, sizeof *w);
-  double *memory = dea_arena_alloc(arena, 3 * DEA_LSQ_PARAMS_MAX, sizeof *memory);
+  double *low = dea_arena_alloc(arena, model->count, sizeof *low);
+  double *high = dea_arena_alloc(arena, model->count, sizeof *high);
+  double *scale = dea_arena_alloc(arena, model->count, sizeof *scale);
   double *stress = dea_arena_alloc(arena, largest, sizeof *stress);
   struct dea_coupon_shares *shares = dea_arena_alloc(arena, rows->count, sizeof *shares);
   for (size_t s = 0; s < rows->count && shares != NULL; s++) {
@@ -441,38 +423,44 @@ dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_m
                                                 &shares[s]));
   }
   DEA_TRY_MEMORY(!arena->failed);
-  *w = (struct residuals){model, rows, shares, stress};
-  set_bounds(model, memory, out);
-  out->user = w;
+  for (size_t j = 0; j < model->count; j++) {
+    low[j] = model->params[j].low;
+    high[j] = model->params[j].high;
+    scale[j] = model->params[j].scale;
+  }
+  *w = (struct residuals){model, rows, shares, stress, bare};
+  *out = (struct dea_lsq_problem){.params = model->count,
+                                  .low = low,
+                                  .high = high,
+                                  .scale = scale,
+                                  .residual = residual,
+                                  .user = w};
   return DEA_OK;
 }
 
-struct stresses {
-  const struct dea_fit_model *model;
-  const struct dea_fit_series *series;
-  struct dea_coupon_shares shares;
-};
-
-static dea_status stress_of(void *user, const double *p, double *r)
+dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_model *model,
+                                 const struct dea_fit_rows *rows, struct dea_lsq_problem *out)
 {
-  struct stresses *w = user;
-  struct dea_material material;
-  dea_fit_model_material(w->model, p, w->series->test, &material);
-  return dea_coupon_stress(&material, &w->series->coupon, &w->shares, r);
+  DEA_TRY(arena->ctx, build_problem(arena, model, rows, false, out));
+  for (size_t s = 0; s < rows->count; s++) {
+    for (size_t i = 0; i < rows->series[s].rows && dea_fit_series_used(&rows->series[s]); i++) {
+      out->rows += is_left_out(rows, s, i) ? 0U : 1U;
+    }
+  }
+  for (size_t j = 0; j < model->count; j++) {
+    out->rows += isnan(model->params[j].prior) ? 0U : 1U;
+  }
+  return DEA_OK;
 }
 
 dea_status dea_fit_model_stress(struct dea_arena *arena, const struct dea_fit_model *model,
                                 const struct dea_fit_series *series, struct dea_lsq_problem *out)
 {
-  *out = (struct dea_lsq_problem){.rows = series->rows, .residual = stress_of};
-  struct stresses *w = dea_arena_alloc(arena, 1, sizeof *w);
-  double *memory = dea_arena_alloc(arena, 3 * DEA_LSQ_PARAMS_MAX, sizeof *memory);
-  DEA_TRY_MEMORY(!arena->failed);
-  *w = (struct stresses){.model = model, .series = series};
-  DEA_TRY(arena->ctx,
-          dea_coupon_shares_build(arena, &series->coupon, model->branch_count, &w->shares));
-  set_bounds(model, memory, out);
-  out->user = w;
+  struct dea_fit_rows *rows = dea_arena_alloc(arena, 1, sizeof *rows);
+  DEA_TRY_MEMORY(rows != NULL);
+  *rows = (struct dea_fit_rows){.series = series, .count = 1, .without = SIZE_MAX};
+  DEA_TRY(arena->ctx, build_problem(arena, model, rows, true, out));
+  out->rows = series->rows;
   return DEA_OK;
 }
 

@@ -281,18 +281,23 @@ void dea_lsq_free(struct dea_lsq_fit *fit)
 
 /* ---- profiles ---- */
 
-/* sqrt of the growth of chi2 over variance x rise, less 1, with p_j at `value`; from[]: where the
- * others begin, moved along. */
-static dea_status profile_at(struct dea_context *ctx, const struct dea_lsq_problem *problem,
-                             const struct dea_lsq_fit *fit, size_t j, double value, double unit,
-                             double *from, double *out)
+dea_status dea_lsq_growth(struct dea_context *ctx, const struct dea_lsq_problem *problem,
+                          const struct dea_lsq_fit *fit, size_t j, double value, double unit,
+                          double *from, double *out)
 {
   bool held[DEA_LSQ_PARAMS_MAX];
   struct dea_lsq_fit moved;
   memcpy(held, fit->held, fit->params * sizeof *held);
   held[j] = true;
   from[j] = value;
-  DEA_TRY(ctx, dea_lsq_solve(ctx, problem, from, held, &moved));
+  const dea_status status = dea_lsq_solve(ctx, problem, from, held, &moved);
+  if (status == DEA_E_DOMAIN || status == DEA_E_NOT_CONVERGED) {
+    dea_context_clear(ctx);
+    memcpy(from, fit->p, fit->params * sizeof *from);
+    *out = NAN;
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, status);
   // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): dea_lsq_solve sets it or fails
   memcpy(from, moved.p, fit->params * sizeof *from);
   *out = sqrt(fmax(0, moved.chi2 - fit->chi2) / unit) - 1;
@@ -305,6 +310,7 @@ static dea_status profile_side(struct dea_context *ctx, const struct dea_lsq_pro
                                const struct dea_lsq_fit *fit, size_t j, double direction,
                                double step, double unit, double *out)
 {
+  static const double beyond_model = 1e3; // as far as it goes
   double from[DEA_LSQ_PARAMS_MAX];
   double a = fit->p[j], fa = -1, b = a, fb = -1; // a inside; b beyond once fb > 0
   const double bound = direction < 0 ? problem->low[j] : problem->high[j];
@@ -317,14 +323,8 @@ static dea_status profile_side(struct dea_context *ctx, const struct dea_lsq_pro
       return DEA_OK;
     }
     b = clip(problem, j, a + direction * step);
-    dea_status status = profile_at(ctx, problem, fit, j, b, unit, from, &fb);
-    if (status == DEA_E_DOMAIN || status == DEA_E_NOT_CONVERGED) {
-      dea_context_clear(ctx);
-      fb = 1e3; // beyond the model: as far as it goes
-      memcpy(from, fit->p, fit->params * sizeof *from);
-    } else if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY(ctx, dea_lsq_growth(ctx, problem, fit, j, b, unit, from, &fb));
+    fb = isnan(fb) ? beyond_model : fb;
   }
   if (fb < 0) {
     *out = direction * INFINITY;
@@ -333,14 +333,8 @@ static dea_status profile_side(struct dea_context *ctx, const struct dea_lsq_pro
   for (int k = 0; k < 40 && fabs(b - a) > 1e-4 * fabs(b - fit->p[j]); k++) {
     double share = k % 4 == 3 || fb > 100 ? 0.5 : fa / (fa - fb), f = NAN;
     double at = a + fmin(fmax(share, 0.02), 0.98) * (b - a);
-    dea_status status = profile_at(ctx, problem, fit, j, at, unit, from, &f);
-    if (status == DEA_E_DOMAIN || status == DEA_E_NOT_CONVERGED) {
-      dea_context_clear(ctx);
-      f = 1e3;
-      memcpy(from, fit->p, fit->params * sizeof *from);
-    } else if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY(ctx, dea_lsq_growth(ctx, problem, fit, j, at, unit, from, &f));
+    f = isnan(f) ? beyond_model : f;
     if (fabs(f) < 1e-5) {
       a = b = at;
     } else if (f < 0) {

@@ -106,6 +106,11 @@ dea_status dea_lsq_weigh(bool sought, double *scatter,
                          dea_status (*solve)(void *user, const struct dea_lsq_statistics **found),
                          void *user);
 
+/* sqrt of the growth of chi2 over `unit`, less 1, with p_j at `value` and all others fitted anew;
+ * NAN where the model has no answer. from: [params] where they begin, moved along. */
+dea_status dea_lsq_growth(struct dea_context *ctx, const struct dea_lsq_problem *problem,
+                          const struct dea_lsq_fit *fit, size_t j, double value, double unit,
+                          double *from, double *out);
 /* Profile likelihood: the values of parameter j at which chi2, with all others fitted anew, has
  * grown by `rise` times `variance` (1: 68.3 %, 3.841: 95 %). step: a first guess of the half width.
  * A side that reaches its bound, or where chi2 does not grow so far, is open: +-INFINITY. */
