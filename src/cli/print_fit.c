@@ -235,24 +235,6 @@ static void print_curves(const struct dea_device_fit *fit)
   }
 }
 
-static void print_derived(const struct dea_device_fit *fit)
-{
-  for (size_t k = 0; k < fit->derived_count; k++) {
-    const struct dea_device_derived *d = &fit->derived[k];
-    const struct dea_column *column = &dea_point_columns[d->column];
-    if (k == 0) {
-      printf("\nAt %.4g kV, the highest that was fitted:\n", 1e-3 * d->voltage_V);
-    }
-    printf("  %-20s %10.4g", column->header, column->factor * d->value);
-    printf(!isfinite(d->std) ? "    not determined" : " +- %-8.2g", column->factor * d->std);
-    printf(" %s", column->display_unit);
-    if (!isnan(d->designed)) {
-      printf("   (as designed %.4g)", column->factor * d->designed);
-    }
-    putchar('\n');
-  }
-}
-
 static void print_pairs(const struct dea_device_fit *fit)
 {
   for (size_t k = 0; k < fit->pair_count; k++) {
@@ -271,7 +253,6 @@ void cli_print_device_fit(const struct dea_device_fit *fit)
 {
   print_values(fit);
   print_curves(fit);
-  print_derived(fit);
   print_misfit(&fit->statistics, "the model, what it was not asked to fit, or they are");
   print_weak(fit->weak, fit->weak_count);
   print_pairs(fit);

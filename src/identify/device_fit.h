@@ -7,7 +7,7 @@
 #include "identify/fit.h"
 #include "result/columns.h"
 
-enum { DEA_DEVICE_CURVES_MAX = 32, DEA_DEVICE_PAIRS_MAX = 8, DEA_DEVICE_DERIVED_MAX = 4 };
+enum { DEA_DEVICE_CURVES_MAX = 32, DEA_DEVICE_PAIRS_MAX = 8 };
 
 /* What a parameter is in the design. */
 enum dea_device_param_kind {
@@ -56,12 +56,6 @@ struct dea_device_pair {
   double shrink;      // factor on the larger of the two error bars; 0: then both are known
 };
 
-/* A number that follows from the parameters, at the highest voltage of a sweep. */
-struct dea_device_derived {
-  int column;
-  double voltage_V, value, std, designed;
-};
-
 struct dea_device_fit {
   const struct dea_device_file *file; // lent
   const char *design_file, *model;    // interned; static storage
@@ -82,8 +76,6 @@ struct dea_device_fit {
   size_t pair_count;
   struct dea_fit_next next[DEA_FIT_NEXT_MAX];
   size_t next_count;
-  struct dea_device_derived derived[DEA_DEVICE_DERIVED_MAX];
-  size_t derived_count;
   size_t evaluations;     // of the model: sweeps through all voltages
   struct dea_text design; // file of the fitted device
   struct dea_arena memory;

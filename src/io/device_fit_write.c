@@ -66,22 +66,6 @@ static json_t *curves_json(const struct dea_device_fit *fit)
   return array;
 }
 
-static json_t *derived_json(const struct dea_device_fit *fit)
-{
-  json_t *array = json_array();
-  for (size_t k = 0; k < fit->derived_count; k++) {
-    const struct dea_device_derived *derived = &fit->derived[k];
-    json_t *object = json_object();
-    dea_json_add_text(object, "quantity", dea_point_columns[derived->column].key);
-    dea_json_add(object, "voltage_V", derived->voltage_V);
-    dea_json_add(object, "value", derived->value);
-    dea_json_add(object, "standard_uncertainty", derived->std);
-    dea_json_add(object, "designed", derived->designed);
-    json_array_append_new(array, object);
-  }
-  return array;
-}
-
 static json_t *advice_json(const struct dea_device_fit *fit)
 {
   json_t *object = json_object(), *pairs = json_array();
@@ -113,7 +97,6 @@ json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *comman
   dea_json_add_count(root, "evaluations", fit->evaluations);
   json_object_set_new(root, "curves", curves_json(fit));
   json_object_set_new(root, "slack_settled", json_boolean(fit->settled));
-  json_object_set_new(root, "follows", derived_json(fit));
   json_object_set_new(root, "advice", advice_json(fit));
   return root;
 }

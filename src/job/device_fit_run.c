@@ -622,33 +622,6 @@ static void fill_curve(struct work *w, const struct slopes *s, struct dea_device
   curve->largest = high > low ? largest / (high - low) : NAN;
 }
 
-/* Field and tension at the highest voltage that was fitted with a free film. */
-static void fill_derived(struct work *w, const struct slopes *s)
-{
-  static const char *const keys[DEA_DEVICE_DERIVED_MAX] = {"true_field_V_per_m", "breakdown_margin",
-                                                           "min_tension_N_per_m", "capacitance_F"};
-  size_t top = SIZE_MAX;
-  for (size_t c = 0; c < w->fit->curve_count; c++) {
-    const struct dea_device_curve *curve = &w->fit->curves[c];
-    for (size_t i = 0; i < curve->rows; i++) {
-      const bool free_film = curve->text->kind.value == DEA_DEVICE_SWEEP;
-      if (free_film && curve->used[i] &&
-          (top == SIZE_MAX || curve->voltage_V[i] > w->model.voltage_V[top])) {
-        top = curve->stop[i];
-      }
-    }
-  }
-  for (size_t k = 0; k < DEA_DEVICE_DERIVED_MAX && top != SIZE_MAX; k++) {
-    const int column = dea_point_column_find(keys[k]);
-    const double value = dea_point_get(&s->at[top], column);
-    if (!isnan(value)) {
-      w->fit->derived[w->fit->derived_count++] = (struct dea_device_derived){
-          column, w->model.voltage_V[top], value, std_of(w, s, top, column),
-          w->designed != NULL ? dea_point_get(&w->designed[top], column) : NAN};
-    }
-  }
-}
-
 // The next measurement ----------------------------------------------------------------------------
 
 /* Mean share of its curve's largest value that a row's uncertainty is. */
@@ -763,7 +736,6 @@ static dea_status finish(struct work *w)
       rows += fit->curves[c].used[i] ? 1U : 0U;
     }
   }
-  fill_derived(w, &slopes);
   DEA_TRY(w->ctx, report_fit(w, &slopes));
   fit->scatter = sqrt(squares / (double)(rows > 0 ? rows : 1));
   fit->evaluations = w->model.evaluations;

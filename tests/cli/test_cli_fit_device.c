@@ -104,7 +104,6 @@ TEST(test_negative_voltages)
   command_write("v.csv", "V (kV),capacitance (pF)\n1,24.1\n2,24.2\n3,24.8\n");
   expect("lumped", free_one, "name: s, file: v.csv, uncertainty: 1 %", 0, "");
   snprintf(above, sizeof above, "%s", command_out);
-  assert_contains(above, "At 3 kV, the highest");
   command_write("v.csv", "V (kV),capacitance (pF)\n-1,24.1\n-2,24.2\n-3,24.8\n");
   expect("lumped", free_one, "name: s, file: v.csv, uncertainty: 1 %", 0,
          "v.csv: note: voltages below 0 stand at their size");
