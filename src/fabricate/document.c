@@ -62,13 +62,6 @@ void dea_document_cell(struct dea_document *document, const char *format, ...)
   }
 }
 
-void dea_document_widths(struct dea_document *document, const double *width)
-{
-  for (size_t i = 0; !document->failed && i < document->block[document->count - 1].cells; i++) {
-    document->block[document->count - 1].width[i] = width[i];
-  }
-}
-
 void dea_document_free(struct dea_document *document)
 {
   for (size_t i = 0; i < document->count; i++) {

@@ -1,9 +1,7 @@
-/* A document for people: headings, text and tables, the same for every form that it is written in.
- */
+/* A document for people: headings, text and tables. */
 #pragma once
 
 #include "base/text.h"
-#include "figures/canvas.h"
 
 enum { DEA_CELLS_MAX = 6 };
 
@@ -13,7 +11,7 @@ enum dea_block_kind {
   DEA_BLOCK_TEXT,
   DEA_BLOCK_NOTE, // small
   DEA_BLOCK_STEP, // numbered, with a box to tick
-  DEA_BLOCK_HEAD, // first row of a table: cells and their widths
+  DEA_BLOCK_HEAD, // first row of a table
   DEA_BLOCK_ROW,
 };
 
@@ -21,7 +19,6 @@ struct dea_document_block {
   enum dea_block_kind kind;
   char *cell[DEA_CELLS_MAX]; // text; rows of tables have several; owned
   size_t cells;
-  double width[DEA_CELLS_MAX]; // of the columns, their sum is 1; of a head
 };
 
 struct dea_document {
@@ -35,12 +32,8 @@ struct dea_document {
 void dea_document_add(struct dea_document *document, enum dea_block_kind kind, const char *format,
                       ...) DEA_PRINTF(3, 4);
 void dea_document_cell(struct dea_document *document, const char *format, ...) DEA_PRINTF(2, 3);
-/* Widths of the columns of the head that was added last. */
-void dea_document_widths(struct dea_document *document, const double *width);
 void dea_document_free(struct dea_document *document);
 
 /* One HTML file that needs nothing else; drawing: SVG text that is put after the title, or "". */
 void dea_document_html(const struct dea_document *document, const char *drawing,
                        struct dea_text *out);
-/* Pages of A4, on a canvas that begins with one. */
-void dea_document_pages(const struct dea_paper *paper, const struct dea_document *document);

@@ -33,8 +33,7 @@ struct drawing {
   void (*draw)(const struct dea_paper *paper, const struct dea_workshop *workshop);
 };
 
-/* The process sheet, in two forms. */
-#define PROCESS_PDF "process.pdf"
+/* The process sheet. */
 #define PROCESS_HTML "process.html"
 
 static const struct drawing drawings[] = {
@@ -66,11 +65,7 @@ dea_status dea_workshop_files(const struct dea_workshop *workshop,
       status = sink(user, drawings[i].name);
     }
   }
-  if (status == DEA_OK && !options->drawing_only) {
-    status = sink(user, PROCESS_PDF);
-    status = status == DEA_OK ? sink(user, PROCESS_HTML) : status;
-  }
-  return status;
+  return status == DEA_OK && !options->drawing_only ? sink(user, PROCESS_HTML) : status;
 }
 
 struct location {
@@ -204,23 +199,6 @@ static dea_status write_drawing(struct dea_context *ctx, const struct dea_canvas
   return status;
 }
 
-static dea_status write_process_pdf(struct dea_context *ctx, const struct dea_canvas_type *type,
-                                    const struct dea_document *document, const char *directory)
-{
-  struct dea_paper paper = {.type = type};
-  const char *bytes = NULL;
-  size_t length = 0;
-  DEA_TRY(ctx,
-          type->create(ctx, DEA_CANVAS_PDF, 210, 297, document->block[0].cell[0], &paper.canvas));
-  dea_document_pages(&paper, document);
-  dea_status status = type->finish(paper.canvas, &bytes, &length);
-  if (status == DEA_OK) {
-    status = dea_file_write_into(ctx, directory, PROCESS_PDF, bytes, length);
-  }
-  type->destroy(paper.canvas);
-  return status;
-}
-
 /* With the drawing of the actuator in it. */
 static dea_status write_process_html(struct dea_context *ctx, const struct dea_canvas_type *type,
                                      const struct dea_workshop *workshop,
@@ -249,7 +227,6 @@ static dea_status write_process(struct dea_context *ctx, const struct dea_canvas
 {
   struct dea_document document = {.ctx = ctx};
   dea_status status = dea_process_write(ctx, workshop, sensitivity, &document);
-  status = status == DEA_OK ? write_process_pdf(ctx, type, &document, directory) : status;
   if (status == DEA_OK) {
     status = write_process_html(ctx, type, workshop, &document, directory);
   }

@@ -197,7 +197,6 @@ static void add_ink(const struct sheet *s, const struct dea_amounts *a)
 
 static void add_materials(const struct sheet *s)
 {
-  static const double widths[] = {0.19, 0.19, 0.12, 0.12, 0.38};
   const struct dea_layout *l = s->layout;
   const struct dea_fab_plan *plan = &s->w->plan;
   struct dea_amounts a;
@@ -208,7 +207,6 @@ static void add_materials(const struct sheet *s)
   dea_document_cell(s->to, "one");
   dea_document_cell(s->to, "all %d", plan->copies);
   dea_document_cell(s->to, "remarks");
-  dea_document_widths(s->to, widths);
   for (size_t i = 0; i < l->ply_count; i++) {
     if (dea_ply_like(l, i) == i && dea_ply_is_cut(&l->plies[i])) {
       add_ply(s, i);
@@ -688,10 +686,6 @@ static void add_source(const struct sheet *s, const struct dea_tolerance_effects
 
 static dea_status add_checks(struct dea_context *ctx, const struct sheet *s, bool sensitivity)
 {
-  static const double widths[][3 + DEA_SEEN_MAX] = {{0.3, 0.5, 0.2},
-                                                    {0.25, 0.37, 0.15, 0.23},
-                                                    {0.18, 0.28, 0.14, 0.2, 0.2},
-                                                    {0.15, 0.22, 0.12, 0.17, 0.17, 0.17}};
   const struct dea_fab_plan *plan = &s->w->plan;
   struct dea_tolerance_effects *found = dea_alloc(ctx, 1, sizeof *found);
   DEA_TRY_MEMORY(found != NULL);
@@ -708,7 +702,6 @@ static dea_status add_checks(struct dea_context *ctx, const struct sheet *s, boo
   for (size_t m = 0; m < found->seen_count; m++) {
     dea_document_cell(s->to, "%s, %s", found->seen[m].name, found->seen[m].motion);
   }
-  dea_document_widths(s->to, widths[found->seen_count]);
   add_rows(s, found);
   dea_document_add(s->to, DEA_BLOCK_NOTE,
                    "Tolerances are those of the design's section fabrication.tolerance; those that "

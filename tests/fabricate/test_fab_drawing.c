@@ -163,10 +163,6 @@ TEST(test_words_do_not_overlap)
                      workshop->count + (workshop->plan.copies > 1 ? workshop->count - 1 : 0));
     struct dea_document document = {.ctx = ctx};
     assert_int_equal(dea_process_write(ctx, workshop, false, &document), DEA_OK);
-    begin(210, 297);
-    dea_document_pages(&paper, &document);
-    check_page();
-    assert_true(pages >= 1 && pages <= 2);
     dea_document_free(&document);
   }
 }
@@ -197,37 +193,8 @@ TEST(test_words_of_devices)
     assert_int_equal(pages, workshop->count);
     struct dea_document document = {.ctx = ctx};
     assert_int_equal(dea_process_write(ctx, workshop, false, &document), DEA_OK);
-    begin(210, 297);
-    dea_document_pages(&paper, &document);
-    check_page();
     dea_document_free(&document);
   }
-}
-
-/* Words of any length go onto their lines. */
-TEST(test_long_words)
-{
-  static const double widths[] = {0.1, 0.9};
-  char word[3000];
-  memset(word, 'x', sizeof word - 1);
-  word[sizeof word - 1] = '\0';
-  struct dea_document document = {.ctx = ctx};
-  dea_document_add(&document, DEA_BLOCK_TITLE, "%s", word);
-  dea_document_add(&document, DEA_BLOCK_TEXT, "%s %s", word, word);
-  dea_document_add(&document, DEA_BLOCK_TEXT, "%s", "");
-  dea_document_add(&document, DEA_BLOCK_HEAD, "a");
-  dea_document_cell(&document, "b");
-  dea_document_widths(&document, widths);
-  for (int i = 0; i < 40; i++) {
-    dea_document_add(&document, DEA_BLOCK_ROW, "%.40s", word);
-    dea_document_cell(&document, "%.300s", word);
-  }
-  assert_false(document.failed);
-  begin(210, 297);
-  dea_document_pages(&paper, &document);
-  check_page();
-  assert_true(pages > 2);
-  dea_document_free(&document);
 }
 
 /* ---- numbers ---- */

@@ -6,12 +6,10 @@ set -u
 source=$1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-for tool in pdfinfo pdftotext; do
-  command -v $tool >/dev/null || {
-    echo "$tool is needed: apt-get install poppler-utils (packages.txt)"
-    exit 1
-  }
-done
+command -v pdfinfo >/dev/null || {
+  echo "pdfinfo is needed: apt-get install poppler-utils (packages.txt)"
+  exit 1
+}
 cd "$folder" || exit 1
 "$DEA_COMMAND" --quiet fab "$source/examples/frdea-4.yaml" -o out --set fabrication.copies=2 \
   --set 'title="<b>Title</b> & more"' || exit 1
@@ -27,14 +25,10 @@ pdfinfo -f 1 -l 99 out/parts.pdf >info
 has info "Pages:           11"
 has info "Page    1 size:  595.276 x 841.89 pts (A4)"
 has info "Page   11 size:  595.276 x 841.89 pts (A4)" # the sheet of 210 x 297 mm
-pdfinfo out/process.pdf >info
-has info "595.276 x 841.89 pts (A4)"
 has info "<b>Title</b> & more"
-pdftotext -layout out/process.pdf text
-has text "Process sheet: <b>Title</b> & more"
-has text "Cure at 80"
-has text "unknown"
-has out/process.html "&lt;b&gt;Title&lt;/b&gt; &amp; more"
+has out/process.html "Process sheet: &lt;b&gt;Title&lt;/b&gt; &amp; more"
+has out/process.html "Cure at 80"
+has out/process.html "unknown"
 has out/process.html "default-src 'none'"
 grep -qE '<(script|b|link|img)|https?://' out/process.html &&
   grep -oE '<(script|b|link|img)[^>]*|https?://[^"]*' out/process.html | grep -vE 'www.w3.org|^<body' &&
