@@ -4,76 +4,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-
-/* Text of any length; NULL after a failure. */
-static char *format_text(struct dea_document *document, const char *format, va_list args)
-{
-  va_list again;
-  va_copy(again, args);
-  int length = vsnprintf(NULL, 0, format, args);
-  char *text = document->failed ? NULL : dea_alloc(document->ctx, (size_t)length + 1, 1);
-  if (text != NULL) {
-    vsnprintf(text, (size_t)length + 1, format, again);
-  }
-  va_end(again);
-  document->failed = text == NULL;
-  return text;
-}
-
-static void add_cell(struct dea_document *document, const char *format, va_list args)
-{
-  struct dea_document_block *block = &document->block[document->count - 1];
-  char *text = format_text(document, format, args);
-  if (text != NULL) {
-    block->cell[block->cells++] = text;
-  }
-}
-
-void dea_document_add(struct dea_document *document, enum dea_block_kind kind, const char *format,
-                      ...)
-{
-  if (document->failed) {
-    return;
-  }
-  if (document->count == document->capacity) {
-    size_t capacity = document->capacity > 0 ? 2 * document->capacity : 32;
-    void *bigger = dea_resize(document->ctx, document->block, capacity, sizeof *document->block);
-    if (bigger == NULL) {
-      document->failed = true;
-      return;
-    }
-    document->block = bigger;
-    document->capacity = capacity;
-  }
-  document->block[document->count++] = (struct dea_document_block){.kind = kind};
-  va_list args;
-  va_start(args, format);
-  add_cell(document, format, args);
-  va_end(args);
-}
-
-void dea_document_cell(struct dea_document *document, const char *format, ...)
-{
-  if (!document->failed && document->block[document->count - 1].cells < DEA_CELLS_MAX) {
-    va_list args;
-    va_start(args, format);
-    add_cell(document, format, args);
-    va_end(args);
-  }
-}
-
-void dea_document_free(struct dea_document *document)
-{
-  for (size_t i = 0; i < document->count; i++) {
-    for (size_t c = 0; c < document->block[i].cells; c++) {
-      dea_free(document->ctx, document->block[i].cell[c]);
-    }
-  }
-  dea_free(document->ctx, document->block);
-  *document = (struct dea_document){.ctx = document->ctx};
-}
-
-/* ---- HTML ---- */
+#include <string.h>
 
 static const char style[] =
     "body{font:15px/1.5 'DejaVu Sans',Arial,sans-serif;color:#202020;max-width:60em;"
@@ -85,90 +16,109 @@ static const char style[] =
     "ol{padding-left:2.4em}li{margin:.5em 0}svg{width:100%;height:auto}"
     "@media print{body{margin:0;max-width:none}h2{break-after:avoid}tr,li{break-inside:avoid}}";
 
-static void add_row(struct dea_text *out, const struct dea_document_block *block, const char *tag)
+/* How a kind of block begins and ends, and what encloses several of it; of cells, their tag. */
+static const struct {
+  const char *begin, *end, *enclosure, *cell;
+} looks[] = {
+    [DEA_BLOCK_TITLE] = {"<h1>", "</h1>\n", "", NULL},
+    [DEA_BLOCK_HEADING] = {"<h2>", "</h2>\n", "", NULL},
+    [DEA_BLOCK_TEXT] = {"<p>", "</p>\n", "", NULL},
+    [DEA_BLOCK_NOTE] = {"<p class=\"note\">", "</p>\n", "", NULL},
+    [DEA_BLOCK_STEP] = {"<li>\xe2\x98\x90 ", "</li>\n", "ol", NULL},
+    [DEA_BLOCK_HEAD] = {"<tr>", "</tr>\n", "table", "th"},
+    [DEA_BLOCK_ROW] = {"<tr>", "</tr>\n", "table", "td"},
+};
+
+static void add_words(struct dea_document *document, const char *format, va_list args)
 {
-  dea_text_add(out, "<tr>");
-  for (size_t c = 0; c < block->cells; c++) {
-    dea_text_add(out, "<%s>", tag);
-    dea_xml_add(out, block->cell[c]);
-    dea_text_add(out, "</%s>", tag);
+  struct dea_text *html = &document->html;
+  va_list again;
+  va_copy(again, args);
+  const int length = vsnprintf(NULL, 0, format, args);
+  char *text = html->failed ? NULL : dea_alloc(html->ctx, (size_t)length + 1, 1);
+  if (text != NULL) {
+    vsnprintf(text, (size_t)length + 1, format, again);
+    dea_xml_add(html, text);
   }
-  dea_text_add(out, "</tr>\n");
+  va_end(again);
+  html->failed = html->failed || text == NULL;
+  dea_free(html->ctx, text);
 }
 
-static void add_element(struct dea_text *out, const char *begin, const char *text, const char *end)
+static void add_cell(struct dea_document *document, const char *format, va_list args)
 {
-  dea_text_add(out, "%s", begin);
-  dea_xml_add(out, text);
-  dea_text_add(out, "%s\n", end);
-}
-
-static void add_block(struct dea_text *out, const struct dea_document_block *block)
-{
-  const char *text = block->cells > 0 ? block->cell[0] : "";
-  switch (block->kind) {
-  case DEA_BLOCK_TITLE:
-    add_element(out, "<h1>", text, "</h1>");
-    break;
-  case DEA_BLOCK_HEADING:
-    add_element(out, "<h2>", text, "</h2>");
-    break;
-  case DEA_BLOCK_TEXT:
-    add_element(out, "<p>", text, "</p>");
-    break;
-  case DEA_BLOCK_NOTE:
-    add_element(out, "<p class=\"note\">", text, "</p>");
-    break;
-  case DEA_BLOCK_STEP:
-    add_element(out, "<li>\xe2\x98\x90 ", text, "</li>");
-    break;
-  case DEA_BLOCK_HEAD:
-    add_row(out, block, "th");
-    break;
-  case DEA_BLOCK_ROW:
-    add_row(out, block, "td");
-    break;
+  const char *tag = looks[document->kind].cell;
+  if (tag != NULL) {
+    dea_text_add(&document->html, "<%s>", tag);
+  }
+  add_words(document, format, args);
+  if (tag != NULL) {
+    dea_text_add(&document->html, "</%s>", tag);
   }
 }
 
-/* What encloses blocks of a kind. */
-static const char *enclosure(enum dea_block_kind kind)
+/* Ends the last block, and what encloses it unless it goes on. */
+static void end_block(struct dea_document *document, const char *wanted, bool new_table)
 {
-  return kind == DEA_BLOCK_STEP                            ? "ol"
-         : kind == DEA_BLOCK_HEAD || kind == DEA_BLOCK_ROW ? "table"
-                                                           : "";
+  const char *open = looks[document->kind].enclosure;
+  dea_text_add(&document->html, "%s", looks[document->kind].end);
+  if (document->count == 2) {
+    dea_text_add(&document->html,
+                 "<div role=\"img\" aria-label=\"Drawing of the actuator\">%s</div>\n",
+                 document->drawing != NULL ? document->drawing : "");
+  }
+  document->open = open[0] != '\0' && strcmp(open, wanted) == 0 && !new_table;
+  if (open[0] != '\0' && !document->open) {
+    dea_text_add(&document->html, "</%s>\n", open);
+  }
 }
 
-void dea_document_html(const struct dea_document *document, const char *drawing,
-                       struct dea_text *out)
+/* The title is that of the file too. */
+static void begin_file(struct dea_document *document, const char *format, va_list args)
 {
-  const char *open = "";
-  dea_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-                    "style-src 'unsafe-inline'\">\n"
-                    "<meta name=\"viewport\" content=\"width=device-width\">\n<title>");
-  dea_xml_add(out, document->count > 0 ? document->block[0].cell[0] : "");
-  dea_text_add(out, "</title>\n<style>%s</style>\n</head>\n<body>\n", style);
-  for (size_t i = 0; i < document->count; i++) {
-    const struct dea_document_block *block = &document->block[i];
-    const char *wanted = enclosure(block->kind);
-    bool new_table = block->kind == DEA_BLOCK_HEAD;
-    if (open[0] != '\0' && (wanted != open || new_table)) {
-      dea_text_add(out, "</%s>\n", open);
-      open = "";
-    }
-    if (wanted[0] != '\0' && open[0] == '\0') {
-      dea_text_add(out, "<%s>\n", wanted);
-    }
-    open = wanted;
-    add_block(out, block);
-    if (i == 1) {
-      dea_text_add(out, "<div role=\"img\" aria-label=\"Drawing of the actuator\">%s</div>\n",
-                   drawing);
-    }
+  va_list again;
+  va_copy(again, args);
+  dea_text_add(&document->html,
+               "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+               "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+               "style-src 'unsafe-inline'\">\n"
+               "<meta name=\"viewport\" content=\"width=device-width\">\n<title>");
+  add_words(document, format, again);
+  dea_text_add(&document->html, "</title>\n<style>%s</style>\n</head>\n<body>\n", style);
+  va_end(again);
+}
+
+void dea_document_add(struct dea_document *document, enum dea_block_kind kind, const char *format,
+                      ...)
+{
+  const char *wanted = looks[kind].enclosure;
+  va_list args;
+  va_start(args, format);
+  if (document->count == 0) {
+    begin_file(document, format, args);
+  } else {
+    end_block(document, wanted, kind == DEA_BLOCK_HEAD);
   }
-  if (open[0] != '\0') {
-    dea_text_add(out, "</%s>\n", open);
+  if (wanted[0] != '\0' && !document->open) {
+    dea_text_add(&document->html, "<%s>\n", wanted);
   }
-  dea_text_add(out, "</body>\n</html>\n");
+  document->kind = kind;
+  document->count++;
+  dea_text_add(&document->html, "%s", looks[kind].begin);
+  add_cell(document, format, args);
+  va_end(args);
+}
+
+void dea_document_cell(struct dea_document *document, const char *format, ...)
+{
+  va_list args;
+  va_start(args, format);
+  add_cell(document, format, args);
+  va_end(args);
+}
+
+void dea_document_end(struct dea_document *document)
+{
+  end_block(document, "", false);
+  dea_text_add(&document->html, "</body>\n</html>\n");
 }

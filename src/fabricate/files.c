@@ -200,37 +200,27 @@ static dea_status write_drawing(struct dea_context *ctx, const struct dea_canvas
 }
 
 /* With the drawing of the actuator in it. */
-static dea_status write_process_html(struct dea_context *ctx, const struct dea_canvas_type *type,
-                                     const struct dea_workshop *workshop,
-                                     const struct dea_document *document, const char *directory)
-{
-  struct dea_canvas *canvas = NULL;
-  const char *bytes = NULL;
-  size_t length = 0;
-  struct dea_text svg = {.ctx = ctx}, html = {.ctx = ctx};
-  dea_status status = draw(ctx, type, workshop, &drawings[0], &canvas, &bytes, &length);
-  if (status == DEA_OK) {
-    dea_text_add(&svg, "%.*s", (int)length, bytes);
-    const char *start = strstr(dea_text_get(&svg), "<svg"); // without the XML declaration
-    dea_document_html(document, start != NULL ? start : "", &html);
-    status = svg.failed ? DEA_E_MEMORY : dea_text_write(ctx, &html, directory, PROCESS_HTML);
-  }
-  type->destroy(canvas);
-  dea_text_free(&svg);
-  dea_text_free(&html);
-  return status;
-}
-
 static dea_status write_process(struct dea_context *ctx, const struct dea_canvas_type *type,
                                 const struct dea_workshop *workshop, const char *directory,
                                 bool sensitivity)
 {
-  struct dea_document document = {.ctx = ctx};
-  dea_status status = dea_process_write(ctx, workshop, sensitivity, &document);
+  struct dea_canvas *canvas = NULL;
+  const char *bytes = NULL;
+  size_t length = 0;
+  struct dea_text svg = {.ctx = ctx};
+  struct dea_document document = {.html = {.ctx = ctx}};
+  dea_status status = draw(ctx, type, workshop, &drawings[0], &canvas, &bytes, &length);
   if (status == DEA_OK) {
-    status = write_process_html(ctx, type, workshop, &document, directory);
+    dea_text_add(&svg, "%.*s", (int)length, bytes);
+    document.drawing = strstr(dea_text_get(&svg), "<svg"); // without the XML declaration
+    status = svg.failed ? DEA_E_MEMORY : dea_process_write(ctx, workshop, sensitivity, &document);
   }
-  dea_document_free(&document);
+  if (status == DEA_OK) {
+    status = dea_text_write(ctx, &document.html, directory, PROCESS_HTML);
+  }
+  type->destroy(canvas);
+  dea_text_free(&svg);
+  dea_text_free(&document.html);
   return status;
 }
 

@@ -737,5 +737,6 @@ dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop 
   add_assembly(&s);
   add_supports(&s);
   DEA_TRY(ctx, add_checks(ctx, &s, sensitivity));
-  return document->failed ? DEA_E_MEMORY : DEA_OK;
+  dea_document_end(document);
+  return document->html.failed ? DEA_E_MEMORY : DEA_OK;
 }

@@ -20,7 +20,7 @@ struct dea_amounts {
 void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *out);
 
 /* Writes it all, with the effects of tolerances: of a disc, and of other devices where they are
- * asked for, which takes their solution. document: zero but for its context; to be freed also after
- * a failure. */
+ * asked for, which takes their solution. document: zero but for its context and drawing; to be
+ * freed also after a failure. */
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
                              bool sensitivity, struct dea_document *document);

@@ -161,9 +161,9 @@ TEST(test_words_do_not_overlap)
     check_page();
     assert_int_equal(pages,
                      workshop->count + (workshop->plan.copies > 1 ? workshop->count - 1 : 0));
-    struct dea_document document = {.ctx = ctx};
+    struct dea_document document = {.html = {.ctx = ctx}};
     assert_int_equal(dea_process_write(ctx, workshop, false, &document), DEA_OK);
-    dea_document_free(&document);
+    dea_text_free(&document.html);
   }
 }
 
@@ -191,9 +191,9 @@ TEST(test_words_of_devices)
     dea_pages_draw(&paper, workshop);
     check_page();
     assert_int_equal(pages, workshop->count);
-    struct dea_document document = {.ctx = ctx};
+    struct dea_document document = {.html = {.ctx = ctx}};
     assert_int_equal(dea_process_write(ctx, workshop, false, &document), DEA_OK);
-    dea_document_free(&document);
+    dea_text_free(&document.html);
   }
 }
 
@@ -250,15 +250,9 @@ TEST(test_sensitivity_of_film)
 
 static dea_status write_document(struct dea_context *failing)
 {
-  struct dea_document document = {.ctx = failing};
-  struct dea_text html = {.ctx = failing};
+  struct dea_document document = {.html = {.ctx = failing}};
   dea_status status = dea_process_write(failing, workshop, false, &document);
-  if (status == DEA_OK) {
-    dea_document_html(&document, "", &html);
-    status = html.failed ? DEA_E_MEMORY : DEA_OK;
-  }
-  dea_text_free(&html);
-  dea_document_free(&document);
+  dea_text_free(&document.html);
   return status;
 }
 

@@ -91,16 +91,13 @@ TEST(test_plies)
   assert_close(found.seen[0].value, height(name, "plies.film.thickness", "100 um"), 1e-6, 0);
   // as the sheet shows it
   char cell[60];
-  struct dea_document document = {.ctx = ctx};
-  struct dea_text html = {.ctx = ctx};
+  struct dea_document document = {.html = {.ctx = ctx}};
   snprintf(cell, sizeof cell, "%+.3g \xc2\xb5m (%+.2g %%)", 1e6 * effect_of("plies.film.thickness"),
            100 * effect_of("plies.film.thickness") / found.seen[0].value);
   assert_int_equal(dea_process_write(ctx, workshop, true, &document), DEA_OK);
-  dea_document_html(&document, "", &html);
-  assert_non_null(strstr(dea_text_get(&html), cell));
-  assert_non_null(strstr(dea_text_get(&html), "by model 3d at 4 kV"));
-  dea_text_free(&html);
-  dea_document_free(&document);
+  assert_non_null(strstr(dea_text_get(&document.html), cell));
+  assert_non_null(strstr(dea_text_get(&document.html), "by model 3d at 4 kV"));
+  dea_text_free(&document.html);
 }
 
 static struct dea_load_point solve(double voltage_V)
