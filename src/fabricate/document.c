@@ -14,8 +14,9 @@ static const char style[] =
     "th,td{text-align:left;vertical-align:top;padding:.35em .6em;border-bottom:1px solid #d5d8dd}"
     "th{border-bottom:1px solid #202020}.note{color:#6a6a6a;font-size:.88em}"
     "ol{padding-left:2.4em}li{margin:.5em 0}svg{width:100%;height:auto}"
-    "@page{size:A4;margin:18mm}@media "
-    "print{body{margin:0;max-width:none;font-size:11px}h2{break-after:avoid}tr,li{break-inside:"
+    "@page{size:A4;margin:14mm}@media "
+    "print{body{margin:0;max-width:none;font-size:10.5px}svg{max-height:150mm}h2{break-after:avoid}"
+    "tr,li{break-inside:"
     "avoid}}";
 
 /* How a kind of block begins and ends, and what encloses several of it; of cells, their tag. */
