@@ -173,7 +173,7 @@ static void exchange_std(struct h5 *h, hid_t parent, struct dea_curve *curve)
 
 static dea_status status_of_name(const char *name)
 {
-  for (int s = DEA_OK; s <= (int)DEA_E_INTERRUPTED; s++) {
+  for (int s = DEA_OK; s <= (int)DEA_E_INVERTED; s++) {
     if (strcmp(dea_status_name((dea_status)s), name) == 0) {
       return (dea_status)s;
     }

@@ -102,7 +102,7 @@ TEST(test_store_reads_back_to_the_bit)
 {
   struct dea_run *run;
   result->curves[0].complete = false;
-  result->curves[0].status = DEA_E_NO_EQUILIBRIUM;
+  result->curves[0].status = DEA_E_INVERTED;
   strcpy(result->curves[0].stopped, "no equilibrium above 4.6 kV");
   result->curves[0].points[3].force_N = NAN; // a hole in a column
   result->provenance.wall_s = 0.1;
