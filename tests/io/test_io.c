@@ -108,6 +108,7 @@ TEST(test_store_reads_back_to_the_bit)
   result->provenance.wall_s = 0.1;
   result->provenance.solver = (struct dea_solver_counters){1, 2, 3, 4, 5};
   assert_int_equal(dea_results_h5_write(ctx, result, in_folder("results.h5")), DEA_OK);
+  assert_int_equal(result->curves[0].status, DEA_E_INVERTED); // writing changes nothing
   assert_int_equal(dea_run_read(ctx, folder, &run), DEA_OK);
   const struct dea_result *back = run->result;
   assert_int_equal(back->curve_count, result->curve_count);
