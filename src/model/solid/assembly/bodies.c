@@ -462,9 +462,9 @@ static dea_status check_follower(struct dea_context *ctx, const struct dea_solid
     u[i] = shift + M[3 * i] * r[0] + M[3 * i + 1] * r[1] + M[3 * i + 2] * r[2];
   }
   for (size_t i = 0; i < 3; i++) {
-    double direction =
+    double displacement =
         Q != NULL ? Q[3 * i] * u[0] + Q[3 * i + 1] * u[1] + Q[3 * i + 2] * u[2] : u[i];
-    if (p->held[3 * node + i] && fabs(direction) > 1e-9 * b->length_m) {
+    if (p->held[3 * node + i] && fabs(displacement) > 1e-9 * b->length_m) {
       const double *X = p->grid->X + 3 * node;
       return dea_fail(ctx, DEA_E_ARGUMENT,
                       "the node at (%.4g, %.4g, %.4g) mm is held and follows a body that may move "

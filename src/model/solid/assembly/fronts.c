@@ -40,9 +40,9 @@ struct front {
 
 /* A block of K, PER x PER, by columns. */
 struct block {
-  size_t from;     // number of it in K
-  size_t to;       // in L
-  bool transposed; // transposed
+  size_t from; // number of it in K
+  size_t to;   // in L
+  bool transposed;
 };
 
 struct dea_fronts {
@@ -355,9 +355,9 @@ static dea_status reserve(struct dea_context *ctx, struct dea_fronts *f)
   }
   for (size_t n = 0; n < f->count; n++) {
     const struct front *front = &f->fronts[n];
-    size_t *of = &depth[front->side], *max_negative = &deepest[front->side];
+    size_t *of = &depth[front->side], *peak = &deepest[front->side];
     *of += update_size(front);
-    *max_negative = *of > *max_negative ? *of : *max_negative;
+    *peak = *of > *peak ? *of : *peak;
     for (; waiting > 0 && f->fronts[f->waiting[waiting - 1]].parent == (int)n; waiting--) {
       depth[!front->side] -= update_size(&f->fronts[f->waiting[waiting - 1]]);
     }

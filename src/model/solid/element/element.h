@@ -183,9 +183,9 @@ static inline void dea_element_add_mass(int nodes, double kilograms, const doubl
                                         double *mass)
 {
   for (int a = 0; a < nodes; a++) {
-    double fraction = kilograms * value[a];
+    double weight = kilograms * value[a];
     for (int b = 0; b < nodes; b++) {
-      mass[a * nodes + b] += fraction * value[b];
+      mass[a * nodes + b] += weight * value[b];
     }
   }
 }

@@ -759,10 +759,10 @@ static void membrane_force(const struct dea_hex_shape *s, const struct dea_gauss
     int i = node % fit->n, j = node / fit->n;
     for (int q = 0; q < s->gauss; q++) {
       int a = q % fit->n, b = q / fit->n % fit->n, c = q / (fit->n * fit->n);
-      double fraction = fit->plane[i][a] * fit->plane[j][b] * 0.5 * w[c] * thickness_m;
+      double weight = fit->plane[i][a] * fit->plane[j][b] * 0.5 * w[c] * thickness_m;
       for (int m = 0; m < 3; m++) {
-        out->force[node][2 * m] += fraction * P[q][3 * m];
-        out->force[node][2 * m + 1] += fraction * P[q][3 * m + 1];
+        out->force[node][2 * m] += weight * P[q][3 * m];
+        out->force[node][2 * m + 1] += weight * P[q][3 * m + 1];
       }
     }
   }

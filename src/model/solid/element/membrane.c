@@ -393,9 +393,9 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
   memset(out->force, 0, sizeof out->force);
   for (int node = 0; node < out->plane_nodes; node++) {
     for (int q = 0; q < shape->gauss; q++) {
-      double fraction = fit.plane[node % fit.n][q % fit.n] * fit.plane[node / fit.n][q / fit.n];
+      double weight = fit.plane[node % fit.n][q % fit.n] * fit.plane[node / fit.n][q / fit.n];
       for (int m = 0; m < 6; m++) {
-        out->force[node][m] += fraction * part_material->thickness_m * P[q][m];
+        out->force[node][m] += weight * part_material->thickness_m * P[q][m];
       }
     }
   }

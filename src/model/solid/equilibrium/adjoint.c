@@ -54,10 +54,10 @@ struct dea_adjoint {
   double *b, *L;                 // of each own element, see dea_element_type.constraint
   double *lambda;                // [count][dofs]
   double *nu;                    // [count][all]
-  /* of each answer, [count] times; right and way of those that are not there yet, one by one */
-  double *right, *conjugate;     // [dofs] of the slopes at first, way: K^-1 b^T towards
+  /* of each answer, [count] times; right and conjugate of those that are not there yet: in turn */
+  double *right, *conjugate;     // [dofs] of the slopes at first, conjugate: K^-1 b^T towards
   double *pull;                  // [all] Q_p
-  double *left, *towards, *gain; // [all] of b lambda, direction of a step, b way
+  double *left, *towards, *gain; // [all] of b lambda, direction of a step, b conjugate
   double *before;                // size of the last left
   double (*largest)[KINDS];      // largest nu
   size_t *open;                  // numbers of those that are not there yet
@@ -349,7 +349,7 @@ static size_t aim(struct dea_adjoint *a, size_t count)
   return open;
 }
 
-/* One step of conjugate gradients of an answer along its direction, of which way is K^-1 b^T. */
+/* One step of conjugate gradients of an answer along its direction; conjugate is its K^-1 b^T. */
 static void step(struct dea_adjoint *a, size_t number, const double *conjugate)
 {
   double *towards = a->towards + number * a->all, *left = a->left + number * a->all,

@@ -399,8 +399,8 @@ static double distance_from(struct dea_solid_continuation *t, const double *pred
 {
   double sum = (t->load - tau) * (t->load - tau);
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
-    double span = t->s->state.u[i] - predicted[i];
-    sum += t->metric[i] * span * span;
+    double off = t->s->state.u[i] - predicted[i];
+    sum += t->metric[i] * off * off;
   }
   return sqrt(sum);
 }

@@ -141,9 +141,9 @@ static void remember(struct follow *w)
   }
 }
 
-/* fraction [depth] that makes the size of f - sum of fraction df least; how many of the
+/* coefficient [depth] that makes the size of f - sum of coefficient df least; how many of the
  * differences, the newest ones, say enough for that. */
-static int mix(const struct follow *w, double *fraction)
+static int mix(const struct follow *w, double *coefficient)
 {
   double scale[DEPTH], A[DEPTH * DEPTH];
   for (int n = w->depth; n > 0; n--) {
@@ -153,15 +153,15 @@ static int mix(const struct follow *w, double *fraction)
       fine = fine && scale[i] > 0;
     }
     for (int i = 0; i < n && fine; i++) {
-      fraction[i] = product(w, w->df[i], w->h, w->f) / scale[i];
+      coefficient[i] = product(w, w->df[i], w->h, w->f) / scale[i];
       for (int j = 0; j < n; j++) {
         A[i * n + j] = 0.5 * (w->gram[i][j] + w->gram[j][i]) / (scale[i] * scale[j]);
       }
       A[i * n + i] += 1e-10;
     }
-    if (fine && LAPACKE_dposv(LAPACK_ROW_MAJOR, 'U', n, 1, A, n, fraction, 1) == 0) {
+    if (fine && LAPACKE_dposv(LAPACK_ROW_MAJOR, 'U', n, 1, A, n, coefficient, 1) == 0) {
       for (int i = 0; i < n; i++) {
-        fraction[i] /= scale[i];
+        coefficient[i] /= scale[i];
       }
       return n;
     }
@@ -172,15 +172,15 @@ static int mix(const struct follow *w, double *fraction)
 /* The next x from x, f and what is remembered. */
 static void advance(struct follow *w)
 {
-  double fraction[DEPTH];
-  int n = mix(w, fraction);
+  double coefficient[DEPTH];
+  int n = mix(w, coefficient);
   memcpy(w->x_old, w->x, w->count * sizeof *w->x);
   memcpy(w->f_old, w->f, w->count * sizeof *w->f);
   memcpy(w->h_old, w->h, w->dofs * sizeof *w->h);
   for (size_t i = 0; i < w->count; i++) {
     w->x[i] += w->f[i];
     for (int k = 0; k < n; k++) {
-      w->x[i] -= fraction[k] * (w->dx[k][i] + w->df[k][i]);
+      w->x[i] -= coefficient[k] * (w->dx[k][i] + w->df[k][i]);
     }
   }
 }

@@ -97,9 +97,9 @@ static void value_at(const struct dea_spring *s, double y, double out[3])
   size_t last = s->count - 1, i = 1;
   if (!(y > s->at[0]) || y >= s->at[last]) { // NAN too: u is checked by the elements
     size_t end = y >= s->at[last] ? last : 0;
-    double beyond = y - s->at[end];
-    out[0] = s->energy[end] + beyond * (s->force[end] + 0.5 * beyond * s->slope[end]);
-    out[1] = s->force[end] + beyond * s->slope[end];
+    double past_end = y - s->at[end];
+    out[0] = s->energy[end] + past_end * (s->force[end] + 0.5 * past_end * s->slope[end]);
+    out[1] = s->force[end] + past_end * s->slope[end];
     out[2] = s->slope[end];
     return;
   }

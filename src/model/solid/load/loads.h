@@ -103,8 +103,7 @@ void dea_contact_destroy(struct dea_context *ctx, struct dea_contact *contact);
 /* Where the next solve brings the tip. */
 void dea_contact_move(struct dea_contact *contact, const double place_m[3]);
 /* Of the surface on the tip, or on the other surface, at the last equilibrium, u: its
- * displacements.
- */
+ * displacements. */
 void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3]);
 /* Reference area of the surface that touches [m^2]. */
 double dea_contact_area(const struct dea_contact *contact);

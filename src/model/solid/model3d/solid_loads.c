@@ -200,7 +200,7 @@ static bool is_loaded(const void *self, int region, int ply, const double middle
          mesh->plane->within[(size_t)region * mesh->plane->group_count + group] != 0;
 }
 
-/* A face of a ply in a region; *height_m: its z. */
+/* A face of a ply in a region. */
 static dea_status create_face(struct dea_context *ctx, const struct dea_model *model, size_t region,
                               size_t ply, bool top, struct dea_surface **out)
 {

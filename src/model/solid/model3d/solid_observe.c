@@ -441,9 +441,8 @@ static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_
   }
 }
 
-/* What holds a body along what keeps the symmetry of a sector is the same in all copies; the rest
- * of it they take from each other. */
-/* Forces of a sector become those of the whole. */
+/* Forces of a sector become those of the whole: what acts along what keeps the symmetry is the same
+ * in all copies, the rest they take from each other. */
 static void sum_up_forces(const struct dea_layout_mesh *mesh, int count, double *out)
 {
   const int keeps = dea_layout_sector_keeps(&mesh->sector);
