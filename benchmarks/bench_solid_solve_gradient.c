@@ -78,7 +78,7 @@ static void measure(struct dea_context *ctx, const struct dea_design *design,
   int columns[QUANTITIES];
   struct dea_model *model;
   double step = step_of(ctx, device, settings, &model);
-  bench_need(dea_design_numbers(ctx, design, device, 1e3 * KV, numbers, &count), ctx);
+  bench_need(dea_design_numbers(ctx, design, device, 1e3 * KV, false, numbers, &count), ctx);
   for (int i = 0; i < QUANTITIES; i++) {
     columns[i] = dea_point_column_find(keys[i]);
   }

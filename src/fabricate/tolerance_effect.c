@@ -117,7 +117,7 @@ static dea_status find_numbers(struct dea_context *ctx, const struct solver_stat
 {
   const struct dea_layout *layout = s->device->layout;
   size_t count, kept = 0;
-  DEA_TRY(ctx, dea_design_numbers(ctx, s->design, s->device, 0, out->number, &count));
+  DEA_TRY(ctx, dea_design_numbers(ctx, s->design, s->device, 0, false, out->number, &count));
   for (size_t i = 0; i < count; i++) {
     if (!(out->number[i].tolerance > 0)) {
       continue;

@@ -12,8 +12,7 @@ enum { DEA_DEVICE_CURVES_MAX = 32, DEA_DEVICE_PAIRS_MAX = 8 };
 /* What a parameter is in the design. */
 enum dea_device_param_kind {
   DEA_DEVICE_KEY,
-  DEA_DEVICE_MATERIAL, // a number of a material (study/material_numbers.h)
-  DEA_DEVICE_BRANCH,   // of the film's viscosity: moduli have even numbers, times odd ones
+  DEA_DEVICE_MATERIAL, // a number of a material (study/numbers.h)
 };
 
 struct dea_device_param {
@@ -22,7 +21,6 @@ struct dea_device_param {
   const char *state;                   // " stretched", " unstretched" or ""; static storage
   bool list;                           // the key is a list of one number
   bool whole;                          // the key is a whole number
-  size_t index;                        // of branch b 2 b: modulus, 2 b + 1: time
   size_t material, offset;             // of a number of a material: which one, and where in it
   double designed;                     // the design's value; NAN: it has none
   char prior_of[64];                   // material of the catalogue that the prior is from; "": none

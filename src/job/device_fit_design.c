@@ -6,7 +6,7 @@
 #include "base/version.h"
 #include "base/write_file.h"
 #include "base/yaml_write.h"
-#include "study/material_numbers.h"
+#include "study/numbers.h"
 
 #include <math.h>
 #include <stdio.h>

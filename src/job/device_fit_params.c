@@ -4,7 +4,7 @@
 
 #include "base/units.h"
 #include "material/catalogue.h"
-#include "study/material_numbers.h"
+#include "study/numbers.h"
 
 #include <math.h>
 #include <stdio.h>

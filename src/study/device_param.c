@@ -3,17 +3,13 @@
 #include "base/units.h"
 #include "base/write_file.h"
 #include "study/design_file.h"
-#include "study/material_numbers.h"
-#include "study/part_numbers.h"
+#include "study/numbers.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { KEYS_MAX = DEA_DEVICE_PARAMS_MAX * (1 + DEA_DEVICE_TIES_MAX) };
-
-static const char branch_prefix[] = "film.branch.";
 
 static const struct dea_listed *find_value(const struct dea_design *design, const char *key)
 {
@@ -28,57 +24,33 @@ static const struct dea_listed *find_value(const struct dea_design *design, cons
   return NULL;
 }
 
-/* The same of a design with plies. */
-static dea_status unknown_part(struct dea_context *ctx,
-                               const struct dea_device_param_source *source,
-                               const struct dea_label *name, const char *why)
+dea_status dea_device_param_unknown(struct dea_context *ctx,
+                                    const struct dea_device_param_source *source,
+                                    const struct dea_label *name, const char *why)
 {
+  const bool plies = source->design->parts != NULL;
   struct dea_design_number *numbers = dea_alloc(ctx, DEA_NUMBERS_MAX, sizeof *numbers);
   const char *known[DEA_NUMBERS_MAX];
   size_t count = 0;
   DEA_TRY_MEMORY(numbers != NULL);
-  dea_status status = dea_part_numbers(ctx, source->design, source->device, false, numbers, &count);
+  dea_status status =
+      dea_design_numbers(ctx, source->design, source->device, 0, false, numbers, &count);
   for (size_t i = 0; i < count; i++) {
     known[i] = numbers[i].key;
   }
-  const char *nearest = dea_nearest_name(name->text, known, count);
+  const char *nearest = why == NULL ? dea_nearest_name(name->text, known, count) : NULL;
   if (status == DEA_OK) {
     status =
         dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s' %s%s%s%s", name->text,
                         why != NULL ? why
-                                    : "is no number of a part of the design (plies.NAME.thickness, "
-                                      "shapes.NAME.radius)",
+                        : plies     ? "is no number of a part of the design (plies.NAME.thickness, "
+                                      "shapes.NAME.radius)"
+                                    : "is no key of the design",
                         nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
                         nearest != NULL ? "'?" : "");
   }
   dea_free(ctx, numbers);
   return status;
-}
-
-dea_status dea_device_param_unknown(struct dea_context *ctx,
-                                    const struct dea_device_param_source *source,
-                                    const struct dea_label *name, const char *why)
-{
-  if (source->design->parts != NULL) {
-    return unknown_part(ctx, source, name, why);
-  }
-  const struct dea_listing *values = &source->design->values;
-  const char *known[256];
-  size_t count = 0;
-  struct dea_design_schema schema;
-  dea_design_file_schema(&schema);
-  for (size_t i = 0; i < values->count && count < 256; i++) {
-    const struct dea_field *field =
-        dea_record_find(&schema.disc.record, values->items[i].path, NULL);
-    if (field != NULL && dea_field_varies(field)) {
-      known[count++] = values->items[i].path;
-    }
-  }
-  const char *nearest = why == NULL ? dea_nearest_name(name->text, known, count) : NULL;
-  return dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s' %s%s%s%s", name->text,
-                         why != NULL ? why : "is no key of the design",
-                         nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                         nearest != NULL ? "'?" : "");
 }
 
 const char *dea_device_param_split_state(char *text)
@@ -147,76 +119,31 @@ static dea_status from_key(struct dea_context *ctx, const struct dea_device_para
   return DEA_OK;
 }
 
-/* A key of a design with plies: of a part, as --set has it, or of a shape. */
-static dea_status from_part(struct dea_context *ctx, const struct dea_device_param_source *source,
-                            const struct dea_label *name, struct dea_device_param *out, bool *good)
+/* A number of a part or of a material. */
+static dea_status from_number(struct dea_context *ctx, const struct dea_device_param_source *source,
+                              const struct dea_label *name, struct dea_device_param *out,
+                              bool *good)
 {
   struct dea_design_number *numbers = dea_alloc(ctx, DEA_NUMBERS_MAX, sizeof *numbers);
   size_t count = 0;
   DEA_TRY_MEMORY(numbers != NULL);
-  dea_status status = dea_part_numbers(ctx, source->design, source->device, true, numbers, &count);
-  *good = false;
+  const dea_status status =
+      dea_design_numbers(ctx, source->design, source->device, NAN, true, numbers, &count);
   for (size_t i = 0; i < count && status == DEA_OK && !*good; i++) {
-    if (numbers[i].of == DEA_NUMBER_OF_PART && strcmp(numbers[i].key, name->text) == 0) {
-      out->designed = numbers[i].value;
-      out->param.unit = numbers[i].unit;
+    const struct dea_design_number *number = &numbers[i];
+    if (number->of != DEA_NUMBER_OF_DESIGN && strcmp(number->key, name->text) == 0) {
+      out->kind = number->of == DEA_NUMBER_OF_MATERIAL ? DEA_DEVICE_MATERIAL : DEA_DEVICE_KEY;
+      out->material = number->item;
+      out->offset = number->offset;
+      out->param.unit = number->unit;
+      out->param.low = number->low;
+      out->param.high = number->high;
+      out->designed = number->value;
       *good = true;
     }
   }
   dea_free(ctx, numbers);
-  out->kind = DEA_DEVICE_KEY;
-  out->param.low = -INFINITY; // the file's reader says what cannot be
-  out->param.high = INFINITY;
-  return *good || status != DEA_OK ? status : dea_device_param_unknown(ctx, source, name, NULL);
-}
-
-/* "film.branch.1.modulus": the first of the film's branches. */
-static dea_status from_branch(struct dea_context *ctx, const struct dea_device_param_source *source,
-                              const struct dea_label *name, struct dea_device_param *out,
-                              bool *good)
-{
-  const struct dea_material *film = &source->device->film;
-  const char *rest = name->text + strlen(branch_prefix);
-  char *end;
-  const unsigned long number = strtoul(rest, &end, 10);
-  const bool modulus = strcmp(end, ".modulus") == 0, time = strcmp(end, ".time") == 0;
-  *good = end > rest && (modulus || time) && number >= 1 && number <= film->branch_count;
-  if (!*good) {
-    return dea_device_param_unknown(ctx, source, name,
-                                    "is no branch that the film has: film.branch.1.modulus, "
-                                    "film.branch.1.time, ...");
-  }
-  const struct dea_branch *branch = &film->branches[number - 1];
-  out->kind = DEA_DEVICE_BRANCH;
-  out->index = 2 * (number - 1) + (time ? 1U : 0U);
-  out->param.unit = time ? "s" : "Pa";
-  out->param.low = 0;
-  out->param.high = INFINITY;
-  out->designed = time ? branch->time_s : branch->modulus_Pa;
-  return DEA_OK;
-}
-
-/* What a name is looked for by. */
-struct wanted {
-  const char *name;
-  struct dea_device_param *out;
-  bool found;
-};
-
-static void match_number(void *user, const struct dea_material_number *number)
-{
-  struct wanted *wanted = user;
-  if (strcmp(number->key, wanted->name) == 0) {
-    struct dea_device_param *out = wanted->out;
-    out->kind = DEA_DEVICE_MATERIAL;
-    out->material = number->material;
-    out->offset = number->offset;
-    out->param.unit = number->unit;
-    out->param.low = number->low;
-    out->param.high = number->high;
-    out->designed = number->value;
-    wanted->found = true;
-  }
+  return status;
 }
 
 /* Why a name that would be one of the film's material is none; NULL: it would not. */
@@ -228,6 +155,8 @@ static const char *none_of_film(const char *name)
       {"film.law.", "is no parameter of the law that the film has"},
       {"film.permittivity.", "is none of film.permittivity.at_rest and film.permittivity.slope"},
       {"film.density", "is unknown: the film's material has none"},
+      {"film.branch.",
+       "is no branch that the film has: film.branch.1.modulus, film.branch.1.time, ..."},
   };
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     if (strncmp(name, all[i].prefix, strlen(all[i].prefix)) == 0) {
@@ -242,7 +171,6 @@ dea_status dea_device_param_find(struct dea_context *ctx,
                                  const struct dea_label *name, struct dea_device_param *out,
                                  bool *good)
 {
-  struct wanted wanted = {.name = name->text, .out = out};
   out->state = "";
   out->designed = NAN;
   *good = false;
@@ -250,18 +178,11 @@ dea_status dea_device_param_find(struct dea_context *ctx,
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
   snprintf(out->param.name, sizeof out->param.name, "%.127s", name->text);
-  dea_material_numbers(source->device, source->design->parts != NULL, match_number, &wanted);
-  if (wanted.found) {
-    *good = true;
-    return DEA_OK;
-  }
-  if (source->design->parts != NULL) {
-    return from_part(ctx, source, name, out, good);
-  }
-  const char *why = none_of_film(name->text);
-  return why != NULL ? dea_device_param_unknown(ctx, source, name, why)
-         : strncmp(name->text, branch_prefix, strlen(branch_prefix)) == 0
-             ? from_branch(ctx, source, name, out, good)
+  DEA_TRY(ctx, from_number(ctx, source, name, out, good));
+  const char *why = *good || source->design->parts != NULL ? NULL : none_of_film(name->text);
+  return *good ? DEA_OK
+         : why != NULL || source->design->parts != NULL
+             ? dea_device_param_unknown(ctx, source, name, why)
              : from_key(ctx, source, name, out, good);
 }
 
@@ -328,9 +249,6 @@ void dea_device_param_set(const struct dea_device_param *param, double value,
 {
   if (param->kind == DEA_DEVICE_MATERIAL) {
     memcpy((char *)material + param->offset, &value, sizeof value);
-  } else if (param->kind == DEA_DEVICE_BRANCH) {
-    struct dea_branch *branch = &material->branches[param->index / 2];
-    *(param->index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = value;
   }
 }
 

@@ -14,11 +14,9 @@ struct dea_device_param_source {
 
 /* Fills kind, index, list, state, unit, limits (infinite for none) and `designed` of a parameter,
  * whose other members are left alone. name: a dotted key that is a number ("film.thickness"), a
- * number of a material (material_numbers.h: "fibres.young_modulus"), film.branch.N.modulus or .time
- * of the film's viscosity, from 1; of a design with plies
- * numbers of parts and shapes by the names of --set ("plies.film.thickness",
- * "shapes.active.radius"). *good: false after a finding (an error at its place) that says why there
- * is no such parameter. */
+ * number of a material ("fibres.young_modulus", "film.branch.1.time"), of a design with plies of
+ * parts and shapes (study/numbers.h). *good: false after a finding (an error at its place) that
+ * says why there is no such parameter. */
 dea_status dea_device_param_find(struct dea_context *ctx,
                                  const struct dea_device_param_source *source,
                                  const struct dea_label *name, struct dea_device_param *out,

@@ -155,8 +155,8 @@ static dea_status find(struct dea_context *ctx, const struct dea_critical_reques
   dea_status status = dea_critical_find(ctx, ask, &critical);
   f->voltage_V = critical.voltage_V;
   if (status == DEA_OK && !isnan(f->voltage_V)) {
-    status = dea_design_numbers(ctx, result->design, result->device, f->voltage_V, f->numbers,
-                                &f->number_count);
+    status = dea_design_numbers(ctx, result->design, result->device, f->voltage_V, false,
+                                f->numbers, &f->number_count);
     dea_numbers_at_rest(result->device, f->numbers, &f->number_count);
     const struct dea_design_gradient of = {.type = ask->type,
                                            .design = result->design,

@@ -1,7 +1,5 @@
 #include "study/number_rows.h"
 
-#include "study/material_numbers.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -53,43 +51,4 @@ size_t dea_numbers_order(const double *sizes, size_t count, size_t *order)
     }
   }
   return placed;
-}
-
-void dea_number_add(const struct dea_design_number *number, struct dea_design_number *out,
-                    size_t *count)
-{
-  if (*count < DEA_NUMBERS_MAX && (number->value != 0 || number->reach > 0) &&
-      !isnan(number->value)) {
-    out[(*count)++] = *number;
-  }
-}
-
-/* What numbers of materials go to. */
-struct materials {
-  const struct dea_device *device;
-  struct dea_design_number *numbers;
-  size_t *count;
-};
-
-static void store_material(void *user, const struct dea_material_number *of)
-{
-  const struct materials *to = user;
-  const char *material = (const char *)dea_material_of(to->device, of->material);
-  const bool ply = of->material >= DEA_OF_PLIES;
-  struct dea_design_number number = {
-      .unit = of->unit,
-      .value = of->value,
-      .tolerance = NAN,
-      .of = ply ? DEA_NUMBER_OF_PLY : DEA_NUMBER_OF_DEVICE,
-      .item = ply ? of->material - DEA_OF_PLIES : 0,
-      .offset = of->offset + (ply ? 0 : (size_t)(material - (const char *)to->device)),
-      .scale = 1};
-  snprintf(number.key, sizeof number.key, "%s", of->key);
-  dea_number_add(&number, to->numbers, to->count);
-}
-
-void dea_numbers_of_materials(const struct dea_device *device, bool plies,
-                              struct dea_design_number *out, size_t *count)
-{
-  dea_material_numbers(device, plies, store_material, &(struct materials){device, out, count});
 }

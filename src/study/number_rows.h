@@ -2,7 +2,7 @@
 #pragma once
 
 #include "result/table.h"
-#include "study/design_gradient.h"
+#include "study/numbers.h"
 
 /* Columns of a number: its key, its value and its unit. */
 #define DEA_NUMBER_IN_ROW                                                                          \
@@ -28,9 +28,3 @@ struct dea_tolerated dea_number_tolerated(const struct dea_design_number *number
 /* order [count]: places of the sizes above 0, the largest first, equal ones as they come. How many
  * they are. */
 size_t dea_numbers_order(const double *sizes, size_t count, size_t *order);
-/* For those who list numbers: adds one that is not 0, or has a reach, and those of materials, of
- * the plies or of a disc by its short keys. */
-void dea_number_add(const struct dea_design_number *number, struct dea_design_number *out,
-                    size_t *count);
-void dea_numbers_of_materials(const struct dea_device *device, bool plies,
-                              struct dea_design_number *out, size_t *count);

@@ -128,7 +128,7 @@ static dea_status add_given(struct dea_context *ctx, const struct numbers *numbe
 {
   const struct dea_design_number *number = find_number(numbers, keys->name.text);
   struct axis *axis = &plan->axes[plan->count];
-  if (number == NULL || strcmp(number->key, "voltage") == 0) {
+  if (number == NULL || number->of == DEA_NUMBER_OF_SUPPLY) {
     const char *known[DEA_NUMBERS_MAX];
     char why[3 * DEA_NUMBER_KEY_SIZE];
     for (size_t i = 1; i < numbers->count; i++) { // the voltage, the first, is the other axis
@@ -197,7 +197,7 @@ static dea_status build_plan(struct dea_context *ctx, const struct dea_design *d
   struct numbers *numbers = dea_alloc(ctx, 1, sizeof *numbers);
   *out = (struct plan){.column = -1};
   DEA_TRY_MEMORY(numbers != NULL);
-  dea_status status = dea_design_numbers(ctx, design, device, dea_design_highest_V(design),
+  dea_status status = dea_design_numbers(ctx, design, device, dea_design_highest_V(design), false,
                                          numbers->at, &numbers->count);
   for (size_t i = 0; i < settings->parameter_count && status == DEA_OK; i++) {
     status = add_given(ctx, numbers, &settings->parameters[i], out);

@@ -456,7 +456,7 @@ static void drop_voltage(struct stop *stop)
 {
   size_t kept = 0;
   for (size_t i = 0; i < stop->number_count; i++) {
-    if (strcmp(stop->numbers[i].key, "voltage") != 0) {
+    if (stop->numbers[i].of != DEA_NUMBER_OF_SUPPLY) {
       stop->numbers[kept++] = stop->numbers[i];
     }
   }
@@ -468,7 +468,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
                             struct stop *stop)
 {
   DEA_TRY(ctx, find_frequency(ctx, type, model, result, stop));
-  DEA_TRY(ctx, dea_design_numbers(ctx, result->design, result->device, stop->voltage_V,
+  DEA_TRY(ctx, dea_design_numbers(ctx, result->design, result->device, stop->voltage_V, false,
                                   stop->numbers, &stop->number_count));
   if (stop->mode_count == 0) {
     dea_numbers_at_rest(result->device, stop->numbers, &stop->number_count);

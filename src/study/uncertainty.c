@@ -18,7 +18,7 @@
 #include "base/yaml_write.h"
 #include "identify/fit_head.h"
 #include "result/observation.h"
-#include "study/material_numbers.h"
+#include "study/numbers.h"
 #include "study/rerun.h"
 
 #include <math.h>
@@ -154,10 +154,9 @@ struct laws {
   bool full;
 };
 
-static bool is_number(const struct dea_device_param *param,
-                      const struct dea_material_number *number)
+static bool is_number(const struct dea_device_param *param, const struct dea_design_number *number)
 {
-  return param->kind == DEA_DEVICE_MATERIAL && param->material == number->material &&
+  return param->kind == DEA_DEVICE_MATERIAL && param->material == number->item &&
          param->offset == number->offset;
 }
 
@@ -183,11 +182,11 @@ static bool tie(struct laws *laws, size_t i, const struct dea_device_param *para
   return false;
 }
 
-static void add_law(void *user, const struct dea_material_number *number)
+/* number: of a material. */
+static void add_law(struct laws *laws, const struct dea_design_number *number)
 {
-  struct laws *laws = user;
   struct work *w = laws->w;
-  const struct dea_material *material = dea_material_of(w->result->device, number->material);
+  const struct dea_material *material = dea_material_of(w->result->device, number->item);
   const size_t at = offsetof(struct dea_material, param);
   const size_t i = (number->offset - at) / sizeof(double); // of one before it: no parameter
   bool wanted = material->law != NULL && number->offset >= at && i < material->law->param_count &&
@@ -197,7 +196,7 @@ static void add_law(void *user, const struct dea_material_number *number)
   }
   struct dea_device_param param = {.kind = DEA_DEVICE_MATERIAL,
                                    .state = "",
-                                   .material = number->material,
+                                   .material = number->item,
                                    .offset = number->offset,
                                    .designed = number->value};
   param.param.unit = number->unit;
@@ -221,7 +220,18 @@ static void add_law(void *user, const struct dea_material_number *number)
 static dea_status add_laws(struct work *w)
 {
   struct laws laws = {.w = w, .first = w->count};
-  dea_material_numbers(w->result->device, w->result->design->parts != NULL, add_law, &laws);
+  struct dea_design_number *numbers = dea_alloc(w->ctx, DEA_NUMBERS_MAX, sizeof *numbers);
+  size_t count;
+  DEA_TRY_MEMORY(numbers != NULL);
+  const dea_status status =
+      dea_design_numbers(w->ctx, w->result->design, w->result->device, NAN, true, numbers, &count);
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    if (numbers[i].of == DEA_NUMBER_OF_MATERIAL) {
+      add_law(&laws, &numbers[i]);
+    }
+  }
+  dea_free(w->ctx, numbers);
+  DEA_TRY(w->ctx, status);
   for (size_t a = laws.first; a < w->count; a++) {
     for (size_t b = laws.first; b < w->count; b++) {
       const struct dea_material *material = material_of(w, a);

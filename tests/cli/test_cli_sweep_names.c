@@ -76,7 +76,7 @@ static size_t ask_for_names(const char *text)
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   assert_int_equal(dea_design_read(ctx, path, NULL, 0, &design), DEA_OK);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-  assert_int_equal(dea_design_numbers(ctx, design, device, 0, all, &count), DEA_OK);
+  assert_int_equal(dea_design_numbers(ctx, design, device, 0, false, all, &count), DEA_OK);
   if (dea_force_stops(design) > 0) {
     const struct dea_pressed pressed = {dea_force_indenter(design),
                                         dea_force_first_depth_m(design)};

@@ -740,7 +740,7 @@ static double slope_by(const char *text, const char *outcome)
   assert_int_equal(read_and_build(ctx, text, NULL, 0, &design, &device), DEA_OK);
   assert_int_equal(dea_model_create(ctx, type, design, device, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, 2e3, &point), DEA_OK);
-  assert_int_equal(dea_design_numbers(ctx, design, device, 2e3, numbers, &count), DEA_OK);
+  assert_int_equal(dea_design_numbers(ctx, design, device, 2e3, false, numbers, &count), DEA_OK);
   const int column = dea_point_column_find("electrode_edge_u_m");
   const struct dea_design_gradient ask = {.type = type,
                                           .model = model,

@@ -5,7 +5,7 @@
 #include "model/model.h"
 #include "result/columns.h"
 #include "study/design_file.h"
-#include "study/part_numbers.h"
+#include "study/design_gradient.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -150,15 +150,14 @@ static void check_number(struct at *at, const struct dea_design_number *number, 
   bool voltage = strcmp(number->key, "voltage") == 0;
   const double reach = number->reach > 0 ? number->reach : number->value;
   for (int n = 0; n < CHANGES; n++) {
-    struct dea_arena scratch = {.ctx = ctx};
-    struct dea_device device = {.layout = NULL};
+    struct dea_changed_device changed = {.memory = {.ctx = ctx}};
     double value = number->value + decades[n] * reach;
     if (!voltage) {
-      assert_int_equal(dea_part_change(ctx, at->design, number, value, &scratch, &device), DEA_OK);
+      assert_int_equal(dea_device_change(ctx, at->design, at->device, number, value, &changed),
+                       DEA_OK);
     }
-    solve(at, voltage ? at->device : &device, voltage ? value : at->voltage_V, moved[n]);
-    dea_layout_destroy(ctx, device.layout);
-    dea_arena_free(&scratch);
+    solve(at, voltage ? at->device : &changed.device, voltage ? value : at->voltage_V, moved[n]);
+    dea_changed_device_free(&changed);
   }
   for (size_t k = 0; k < KEYS + at->monitor_count; k++) {
     double size = fabs(base[k]);
@@ -209,8 +208,9 @@ static size_t check(struct at *at)
   int columns[KEYS];
   double base[WIDTH];
   assert_int_equal(dea_device_build(ctx, at->design, &at->device), DEA_OK);
-  assert_int_equal(dea_design_numbers(ctx, at->design, at->device, at->voltage_V, numbers, &count),
-                   DEA_OK);
+  assert_int_equal(
+      dea_design_numbers(ctx, at->design, at->device, at->voltage_V, false, numbers, &count),
+      DEA_OK);
   if (!at->vibrates) {
     dea_numbers_at_rest(at->device, numbers, &count);
   }
@@ -592,8 +592,8 @@ TEST(test_all_lengths)
   size_t count;
   assert_int_equal(read_and_build(ctx, bender, NULL, 0, &at.design, &at.device), DEA_OK);
   solve(&at, at.device, at.voltage_V, base);
-  assert_int_equal(dea_design_numbers(ctx, at.design, at.device, at.voltage_V, numbers, &count),
-                   DEA_OK);
+  assert_int_equal(
+      dea_design_numbers(ctx, at.design, at.device, at.voltage_V, false, numbers, &count), DEA_OK);
   for (int k = 0; k < FREQUENCY; k++) {
     columns[k] = dea_point_column_find(keys[k]);
   }
@@ -730,19 +730,17 @@ static void check_critical_number(struct at *at, enum dea_event_kind kind,
   const double reach = number->reach > 0 ? number->reach : number->value;
   double left[COUNT];
   for (int n = 0; n < COUNT; n++) {
-    struct dea_arena scratch = {.ctx = ctx};
-    struct dea_device device = {.layout = NULL};
+    struct dea_changed_device changed;
     struct dea_critical there;
-    assert_int_equal(dea_part_change(ctx, at->design, number, number->value + shares[n] * reach,
-                                     &scratch, &device),
+    assert_int_equal(dea_device_change(ctx, at->design, at->device, number,
+                                       number->value + shares[n] * reach, &changed),
                      DEA_OK);
-    left[n] = (find_critical(at, &device, kind,
+    left[n] = (find_critical(at, &changed.device, kind,
                              kind == DEA_EVENT_PULL_IN ? at->voltage_V : 0.95 * base_V, &there) -
                base_V - slope * reach * shares[n]) /
               base_V;
     dea_critical_end(ctx, &there);
-    dea_layout_destroy(ctx, device.layout);
-    dea_arena_free(&scratch);
+    dea_changed_device_free(&changed);
   }
   for (int n = 0; n < COUNT; n++) {
     const double wanted = left[0] * pow(shares[n] / shares[0], 2);
@@ -762,7 +760,7 @@ static size_t check_critical(struct at *at, enum dea_event_kind kind, double *vo
   size_t count;
   struct dea_critical base;
   const double base_V = find_critical(at, at->device, kind, at->voltage_V, &base);
-  assert_int_equal(dea_design_numbers(ctx, at->design, at->device, base_V, numbers, &count),
+  assert_int_equal(dea_design_numbers(ctx, at->design, at->device, base_V, false, numbers, &count),
                    DEA_OK);
   dea_numbers_at_rest(at->device, numbers, &count);
   const struct dea_design_gradient ask = {.type = base.ask.type,

@@ -60,7 +60,7 @@ static struct dea_device changed(const struct dea_design *design, const struct d
     memcpy((char *)&other + number->offset, &kept, sizeof kept);
     dea_geometry_fill(&other, &out);
   } else {
-    memcpy((char *)&out + number->offset, &kept, sizeof kept);
+    memcpy((char *)dea_material_at(&out, number->item) + number->offset, &kept, sizeof kept);
   }
   return out;
 }
@@ -129,7 +129,8 @@ static void check(const char *model, double stretch, double floor)
   if (stretch > 0) { // more than the whole turns unstable only far beyond the limit point
     device->film = test_material("arruda-boyce", 15.36e3, 5.99, 0);
   }
-  assert_int_equal(dea_design_numbers(ctx, design, device, ask.voltage_V, numbers, &count), DEA_OK);
+  assert_int_equal(dea_design_numbers(ctx, design, device, ask.voltage_V, false, numbers, &count),
+                   DEA_OK);
   assert_true(count >= 10);
   ask.number_count = count;
   solve(type, device, ask.voltage_V, stretch, &base, &ask.model);
@@ -217,7 +218,8 @@ static void check_critical(const char *model, bool soft, const enum dea_event_ki
   }
   struct dea_design_gradient ask = {
       .type = dea_model_find(model), .design = design, .device = device, .numbers = numbers};
-  assert_int_equal(dea_design_numbers(ctx, design, device, 1, numbers, &ask.number_count), DEA_OK);
+  assert_int_equal(dea_design_numbers(ctx, design, device, 1, false, numbers, &ask.number_count),
+                   DEA_OK);
   for (int k = 0; k < kind_count; k++) {
     check_critical_of(&ask, kinds[k], floor);
   }

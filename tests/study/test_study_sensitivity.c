@@ -42,7 +42,7 @@ static dea_status ask(const char *model, const struct dea_override *override,
                                          .number_count = count,
                                          .columns = of,
                                          .column_count = of_count};
-  assert_int_equal(dea_design_numbers(ctx, design, device, 3e3, all, &all_count), DEA_OK);
+  assert_int_equal(dea_design_numbers(ctx, design, device, 3e3, false, all, &all_count), DEA_OK);
   for (size_t k = 0; k < count; k++) {
     for (size_t i = 0; i < all_count; i++) {
       chosen[k] = strcmp(all[i].key, names[k]) == 0 ? all[i] : chosen[k];
