@@ -14,7 +14,6 @@ struct dea_rerun;           // study/rerun.h
 struct dea_study_services {
   const struct dea_checkpoint_sink *checkpoint; // who keeps a sweep as it goes; NULL: nobody
   const struct dea_rerun *rerun;                // NULL for none: no bands
-  size_t processes; // that a study may take at the same time; 0 or 1: this one
 };
 
 struct dea_study {
