@@ -309,12 +309,6 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model,
   return DEA_CHAIN(ctx, status);
 }
 
-static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
-                           const struct dea_model *from, struct dea_load_point *out, bool *found)
-{
-  return DEA_CHAIN(ctx, dea_solver_state_transfer(ctx, &model->at, &from->at, out, found));
-}
-
 static void size(const struct dea_model *model, struct dea_model_size *out)
 {
   *out = (struct dea_model_size){.elements = model->mesh.grid->element_count,
@@ -561,7 +555,6 @@ const struct dea_model_type dea_solid_module = {
     .long_path = long_path,
     .soften = dea_solver_state_soften,
     .push = push,
-    .transfer = transfer,
     .modes = modes,
     .respond = respond,
     .answers = answers,
