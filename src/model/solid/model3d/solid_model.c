@@ -7,7 +7,7 @@
 #include "model/solid/model3d/solid_fields.h"
 #include "model/solid/recovery/line_profile.h"
 #include "result/columns.h"
-#include "result/copies.h"
+#include "result/field_mesh.h"
 
 #include <math.h>
 #include <stdio.h>
