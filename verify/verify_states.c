@@ -6,11 +6,8 @@
 #include "design/design.h"
 #include "model/model.h"
 #include "result/result.h"
-#include "result/richardson.h"
 #include "study/design_file.h"
 #include "study/study.h"
-
-#include <math.h>
 
 extern const struct dea_model_type dea_solid_module;
 extern const struct dea_study dea_study_states;
@@ -50,12 +47,7 @@ static double number(const struct found *found, size_t row, const char *key)
 
 static const char *text(const struct found *found, size_t row, const char *key)
 {
-  const struct dea_result_table_type *type = &found->table->type;
-  size_t i = 0;
-  while (strcmp(type->columns[i].key, key) != 0) {
-    i++;
-  }
-  return dea_result_table_cell(found->table, row, i)->text;
+  return dea_result_table_text(found->table, row, key);
 }
 
 static void print_rows(const struct found *found)
@@ -109,92 +101,11 @@ static void arms(void)
 
 /* ---- as built ---- */
 
-/* Letter of the state of a row, on that mesh too. */
-static bool stays(const struct found *meshes, size_t row)
-{
-  return strcmp(text(meshes, row, "state"), text(meshes, row, "is")) == 0;
-}
-
-/* Energies above the lowest state of the same mesh, and shapes, from mesh to mesh. */
-static void print_meshes(const struct found *meshes)
-{
-  puts("| V (kV) | state | refinement | unknowns | energy (uJ) | above the lowest | centre (um) | "
-       "fibre tip | edge | highest | lowest |\n|---|---|---|---|---|---|---|---|---|---|---|");
-  for (size_t i = 0; i < meshes->table->row_count; i++) {
-    const char *is = text(meshes, i, "is");
-    if (stays(meshes, i) && number(meshes, i, "refinement") < 2.5) {
-      continue; // the second table has these
-    }
-    printf("| %.2f | %s%s%s | %g | %.0f ", 1e-3 * number(meshes, i, "voltage_V"),
-           text(meshes, i, "state"), stays(meshes, i) ? "" : " > ", stays(meshes, i) ? "" : is,
-           number(meshes, i, "refinement"), number(meshes, i, "unknowns"));
-    if (strcmp(is, "-") == 0) {
-      puts("| lost | | | | | | |");
-    } else {
-      printf("| %.4f | %.4f | %.1f | %.1f | %.2f | %+.1f | %+.1f |\n",
-             1e6 * number(meshes, i, "energy_J"), 1e6 * number(meshes, i, "above_J"),
-             1e6 * number(meshes, i, "centre_z_m"), 1e6 * number(meshes, i, "fibre_tip_z_m"),
-             1e6 * number(meshes, i, "electrode_edge_u_m"), 1e6 * number(meshes, i, "highest_z_m"),
-             1e6 * number(meshes, i, "lowest_z_m"));
-    }
-  }
-}
-
-/* Rows of a table of meshes come state by state, each on all of them. */
-enum { MESHES = 4 };
-
-/* A number of a state on the last three meshes, and what the last one is off by. of: the first row
- * of a state from which it counts; none: it stands for itself. */
-static const size_t none = (size_t)-1;
-
-static void print_limit(const struct found *meshes, size_t first, size_t of, const char *key)
-{
-  double refinement[MESHES], values[MESHES], errors[MESHES], order, limit;
-  size_t count = 0;
-  for (size_t m = 0; m < MESHES; m++) {
-    if (stays(meshes, first + m) && (of == none || stays(meshes, of + m))) {
-      refinement[count] = number(meshes, first + m, "refinement");
-      values[count++] =
-          1e6 * (number(meshes, first + m, key) - (of == none ? 0 : number(meshes, of + m, key)));
-    }
-  }
-  if (count < 3) {
-    printf("| - ");
-    return;
-  }
-  bool observed =
-      dea_richardson(refinement, values, count, &order, &limit, errors) == DEA_ORDER_OBSERVED;
-  printf("| %.3f, %.3f, %.3f +- %.3f%s ", values[count - 3], values[count - 2], values[count - 1],
-         errors[count - 1] * fabs(observed ? limit : values[count - 1]), observed ? "" : "*");
-}
-
-static void print_limits(const struct found *meshes)
-{
-  puts("\n| V (kV) | state | above the lowest (uJ) | centre (um) | fibre tip | edge | lowest "
-       "|\n|---|---|---|---|---|---|---|");
-  for (size_t first = 0, lowest = 0; first < meshes->table->row_count; first += MESHES) {
-    if (first == 0 || number(meshes, first, "voltage_V") != number(meshes, lowest, "voltage_V")) {
-      lowest = first;
-    }
-    if (!stays(meshes, first + MESHES - 1)) {
-      continue;
-    }
-    printf("| %.2f | %s ", 1e-3 * number(meshes, first, "voltage_V"), text(meshes, first, "state"));
-    print_limit(meshes, first, lowest, "energy_J");
-    static const char *const keys[] = {"centre_z_m", "fibre_tip_z_m", "electrode_edge_u_m",
-                                       "lowest_z_m"};
-    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
-      print_limit(meshes, first, none, keys[k]);
-    }
-    puts("|");
-  }
-}
-
 static void as_built(void)
 {
   static const struct dea_override sets[] = {
       {"compute.states", "{voltage: [7 kV, 7.25 kV, 7.5 kV, 7.75 kV, 8 kV], modes: 3, push: [200 "
-                         "um, 400 um], relaxed: no}"}};
+                         "um, 400 um]}"}};
   puts("## As built\n\nOn the default mesh.\n\n| V (kV) | state | energy (uJ) | above the lowest | "
        "centre (um) | fibre tip | edge | highest | lowest | reached | leads up to | down to "
        "|\n|---|---|---|---|---|---|---|---|---|---|---|---|");
@@ -203,36 +114,6 @@ static void as_built(void)
   puts("\nA letter is a branch. A dent goes to one side, a state with a highest and a lowest place "
        "of like size has waves.\n");
   release(&found);
-}
-
-/* States at voltages, on four meshes each. */
-static void carry(const char *states)
-{
-  const struct dea_override sets[] = {{"compute.states", states}};
-  struct found found = find(sets, 1);
-  const struct found meshes = {.table =
-                                   dea_result_find_table(found.result, "3d", "states", "meshes")};
-  print_meshes(&meshes);
-  puts("\nHow that goes on: energy above the state that is listed first, and shape, on the last "
-       "three meshes, and the\nestimated error of the last one by their order or, where they show "
-       "none (*), three times the last change.");
-  print_limits(&meshes);
-  release(&found);
-}
-
-static void finer(void)
-{
-  puts("## On meshes that are finer where the film is slack\n"
-       "\n"
-       "States at voltages, each transferred from mesh to mesh (`compute.states: {refined: "
-       "tips}`): on the finest, and where one becomes\n"
-       "another (after the arrow) or is lost (no equilibrium, by itself or along its branch).\n");
-  carry("{voltage: [7.25 kV, 7.5 kV, 8 kV], modes: 3, push: [400 um], refined: tips, refinement: "
-        "[1.5, 2, "
-        "2.5], relaxed: no}");
-  puts("\nAt 7 kV by itself, whose letters are its own:\n");
-  carry("{voltage: [7 kV], modes: 3, push: [200 um, 400 um], refined: tips, refinement: [1.5, 2, "
-        "2.5], relaxed: no}");
 }
 
 int main(int argc, char **argv)
@@ -246,7 +127,6 @@ int main(int argc, char **argv)
   arms();
   if (!small) {
     as_built();
-    finer();
   }
   dea_context_destroy(ctx);
   return verify_end();

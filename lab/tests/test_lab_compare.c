@@ -1,7 +1,7 @@
 /* dea compare with several curves and with what dea reduce writes: misfits that were computed by
  * hand, profiles, histories on one clock. */
 #include "measured_run.h"
-#include "result/compare_history.h"
+#include "result/compare.h"
 
 #include <jansson.h>
 

@@ -1,7 +1,7 @@
 /* Meshes with fields in their public form. */
 #include "api/api.h"
 
-#include "result/copies.h"
+#include "result/field_mesh.h"
 
 #include <stdio.h>
 #include <string.h>

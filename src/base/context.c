@@ -392,11 +392,6 @@ void dea_context_set_agreement(struct dea_context *ctx, bool (*any)(bool here))
   ctx->any = any;
 }
 
-bool dea_context_is_alone(const struct dea_context *ctx)
-{
-  return ctx->any == NULL;
-}
-
 bool dea_interrupted_anywhere(struct dea_context *ctx)
 {
   bool here = dea_interrupted(ctx);

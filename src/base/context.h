@@ -183,8 +183,6 @@ bool dea_interrupted(const struct dea_context *ctx);
 /* How processes that compute one model together (mpirun) agree: true on all of them where `here` is
  * true on one. any: NULL, as at the start, for a process that computes alone. */
 void dea_context_set_agreement(struct dea_context *ctx, bool (*any)(bool here));
-/* Whether this process computes alone. */
-bool dea_context_is_alone(const struct dea_context *ctx);
 /* Whether any of those processes was interrupted; from then on dea_interrupted says so on all. Each
  * of them has to ask at the same place: else one of them waits for ever. */
 bool dea_interrupted_anywhere(struct dea_context *ctx);

@@ -28,7 +28,6 @@ struct request {
   struct cli_words models, studies;
   struct cli_overrides overrides;
   bool json, force, keep, resume, no_figures, sensitivity;
-  double processes; // 0: not given
 };
 
 /* Everything of one run that has to be given back. */
@@ -424,8 +423,7 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
                               .folder = folder,
                               .force = request->force || renewed,
                               .resume = request->resume,
-                              .no_figures = request->no_figures,
-                              .processes = (size_t)request->processes};
+                              .no_figures = request->no_figures};
   DEA_TRY(ctx, choose_models(cli, request, run->design, &run->job));
   dea_status status = dea_job_run(ctx, &run->job, run->result, &began);
   snprintf(message, sizeof message, "%s", dea_context_message(ctx));
@@ -489,8 +487,6 @@ static const struct cli_option options[] = {
      CLI_AT(keep)},
     {"resume", 0, CLI_FLAG, NULL, "go on where the run in the folder stopped (model 3d)",
      CLI_AT(resume)},
-    {"jobs", 'j', CLI_TEXT, "N", "processes for the load lines of study force (default: 1)",
-     CLI_AT(processes), cli_parse_processes},
     {"no-figures", 0, CLI_FLAG, NULL, "no figures", CLI_AT(no_figures)},
     CLI_JSON_ROW("summary as JSON on stdout; a folder only with -o"),
     {0}};

@@ -5,8 +5,7 @@
 #include "base/json.h"
 #include "compare/measured.h"
 #include "plot/plot.h"
-#include "result/compare_history.h"
-#include "result/compare_profile.h"
+#include "result/compare.h"
 
 enum { DEA_SET_CURVES_MAX = 16 };
 

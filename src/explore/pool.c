@@ -2,7 +2,6 @@
 #include "explore/pool.h"
 
 #include "base/clock.h"
-#include "base/worker.h"
 
 #include <errno.h>
 #include <math.h>
@@ -10,6 +9,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -36,6 +36,20 @@ struct dea_pool {
   size_t count;
   struct worker *workers; // [count]
 };
+
+/* All bytes through a socket; false where the other end is gone. */
+static bool send_all(int socket, const void *bytes, size_t length)
+{
+  for (const char *from = bytes; length > 0;) {
+    const ssize_t n = send(socket, from, length, MSG_NOSIGNAL);
+    if (n <= 0 && errno != EINTR) {
+      return false;
+    }
+    from += n > 0 ? n : 0;
+    length -= n > 0 ? (size_t)n : 0;
+  }
+  return true;
+}
 
 static bool receive_all(int socket, void *bytes, size_t length)
 {
@@ -72,10 +86,36 @@ static void work(struct dea_context *ctx, const struct dea_evaluator *evaluator,
   memset(&reply, 0, sizeof reply); // all bytes of it are sent
   while (receive_all(socket, &reply.done, sizeof reply.done)) {
     evaluate(ctx, evaluator, &reply);
-    if (!dea_send_all(socket, &reply, sizeof reply)) {
+    if (!send_all(socket, &reply, sizeof reply)) {
       return;
     }
   }
+}
+
+/* Makes a copy of this process, with a socket between both. *process: 0 in the copy, which ends
+ * with this one and leaves Ctrl-C to it. */
+static dea_status fork_beside(struct dea_context *ctx, pid_t *process, int *socket)
+{
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    return dea_fail(ctx, DEA_E_IO, "no socket for another process: %s", strerror(errno));
+  }
+  const pid_t parent = getpid();
+  *process = fork();
+  *socket = ends[*process == 0 ? 1 : 0];
+  close(ends[*process == 0 ? 0 : 1]);
+  if (*process == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    signal(SIGINT, SIG_IGN);
+    signal(SIGTERM, SIG_DFL);
+    if (getppid() != parent) {
+      _exit(1);
+    }
+  } else if (*process < 0) {
+    close(*socket);
+    return dea_fail(ctx, DEA_E_IO, "no other process: %s", strerror(errno));
+  }
+  return DEA_OK;
 }
 
 /* A process that works until this one ends, however that ends. */
@@ -83,7 +123,7 @@ static dea_status start(struct dea_pool *pool, struct worker *worker)
 {
   pid_t process = -1;
   int socket = -1;
-  DEA_TRY(pool->ctx, dea_fork_beside(pool->ctx, &process, &socket));
+  DEA_TRY(pool->ctx, fork_beside(pool->ctx, &process, &socket));
   if (process == 0) {
     dea_context_set_progress(pool->ctx, NULL, NULL);
     dea_context_set_interrupt(pool->ctx, NULL);
@@ -110,9 +150,9 @@ static void end(struct worker *worker, char why[DEA_CASE_WHY_SIZE])
     }
     close(worker->socket);
     if (why != NULL) {
-      char by[DEA_ENDED_BY];
-      snprintf(why, DEA_CASE_WHY_SIZE, "the process of this case ended by %s",
-               dea_ended_by(how, by));
+      snprintf(why, DEA_CASE_WHY_SIZE, "the process of this case ended by %s %d",
+               WIFSIGNALED(how) ? "signal" : "exit code",
+               WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
     }
   }
   worker->process = 0;
@@ -157,7 +197,7 @@ static dea_status assign_case(struct dea_pool *pool, struct worker *worker)
 {
   DEA_TRY(pool->ctx, worker->process == 0 ? start(pool, worker) : DEA_OK);
   worker->busy = true;
-  dea_send_all(worker->socket, &worker->now, sizeof worker->now); // one that is gone is seen later
+  send_all(worker->socket, &worker->now, sizeof worker->now); // one that is gone is seen later
   return DEA_OK;
 }
 

@@ -1,7 +1,7 @@
 #include "figures/surface_lattice.h"
 
 #include "base/quadrature.h"
-#include "result/copies.h"
+#include "result/field_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "base/bytes.h"
 #include "base/version.h"
 #include "base/write_file.h"
-#include "result/copies.h"
+#include "result/field_mesh.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -15,7 +15,6 @@ struct dea_job {
   bool force;         // replace the results in it, once this job has its own
   bool resume;        // go on from them
   bool no_figures;
-  size_t processes;  // that a study may take at the same time; 0 or 1: this one
   char *part;        // of a job that has begun: folder beside that of the results that it replaces;
                      // NULL: none; owned
   bool made;         // the folder was not there before

@@ -277,11 +277,6 @@ struct dea_model_type {
    * are both NULL when the model knows one state only. */
   dea_status (*push)(struct dea_context *ctx, struct dea_model *model, const struct dea_push *push,
                      struct dea_load_point *out, bool *found);
-  /* From the last point of a model of the same device on another mesh to a stable equilibrium at
-   * its voltage: down in energy from its displacements. *found: false where that comes to none; the
-   * model is then as it was. NULL when the model cannot. */
-  dea_status (*transfer)(struct dea_context *ctx, struct dea_model *model,
-                         const struct dea_model *from, struct dea_load_point *out, bool *found);
   /* Force [N] out of the plane that fibre tips held at a height [m] push with at a voltage,
    * whatever was solved last; NULL when the model has no load line. */
   dea_status (*hold)(struct dea_context *ctx, const struct dea_model *model, double voltage_V,

@@ -176,13 +176,6 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model,
       ctx, DEA_SOLID_IN_TURN(model->type->push(ctx, model->inner, perturbation, out, found)));
 }
 
-static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
-                           const struct dea_model *from, struct dea_load_point *out, bool *found)
-{
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(model->type->transfer(ctx, model->inner, from->inner, out, found)));
-}
-
 static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
                            const struct dea_gradient_request *ask, double *out)
 {
@@ -296,7 +289,6 @@ const struct dea_model_type dea_model_3d = {
     .long_path = long_path,
     .soften = soften,
     .push = push,
-    .transfer = transfer,
     .modes = modes,
     .respond = respond,
     .answers = answers,

@@ -292,9 +292,6 @@ int dea_point_error_column(const struct dea_context *ctx, int column)
 {
   const struct dea_column *of = dea_column_at(ctx, column);
   char key[DEA_ERROR_KEY_SIZE];
-  if (strcmp(of->key, "force_N") == 0) { // the mesh's is not estimated
-    return dea_point_column_find("force_interpolation_error_N");
-  }
   dea_column_error_key(of, key);
   return find_exactly(ctx, key);
 }

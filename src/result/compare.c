@@ -430,3 +430,253 @@ dea_status dea_compare_curves(struct dea_arena *memory, const struct dea_curve *
              ? DEA_OK
              : nothing_common(ctx, a, b, count == 1 ? columns[0] : -1);
 }
+
+// One clock for two histories --------------------------------------------------------------------
+
+static const double pulse_begins = 0.05, pulse_ends = 0.03; // of the largest |V|
+static const double same_height = 0.1;                      // share by which two pulses differ
+static const double near_edge = 0.2; // of the shortest time between two edges: the same edge
+static const double rounding_s = 1e-6;
+
+struct edge {
+  double time_s, height_V;
+  double width_s; // between the samples that it lies between
+};
+
+struct edges {
+  size_t count;
+  struct edge edge[DEA_CLOCK_EDGES_MAX];
+};
+
+/* Where |V| first reaches half of the height of the pulse of the samples [from, to). */
+static double half_way(const struct dea_samples *track, size_t from, size_t to, double height_V,
+                       double *width_s)
+{
+  const double *v = track->value, *t = track->at;
+  size_t i = from;
+  while (i < to && !(fabs(v[i]) >= 0.5 * height_V)) {
+    i++;
+  }
+  *width_s = i > 0 && i < track->count ? t[i] - t[i - 1] : 0.0;
+  if (i == 0 || i == to || isnan(v[i - 1])) {
+    return t[i < to ? i : from];
+  }
+  double low = fabs(v[i - 1]), high = fabs(v[i]);
+  double share = high > low ? (0.5 * height_V - low) / (high - low) : 1.0;
+  return t[i - 1] + fmin(fmax(share, 0.0), 1.0) * (t[i] - t[i - 1]);
+}
+
+static void add_pulse(const struct dea_samples *track, size_t from, size_t to, double height_V,
+                      struct edges *out)
+{
+  if (out->count < DEA_CLOCK_EDGES_MAX) {
+    struct edge *edge = &out->edge[out->count++];
+    edge->height_V = height_V;
+    edge->time_s = half_way(track, from, to, height_V, &edge->width_s);
+  }
+}
+
+static void find_edges(const struct dea_samples *track, struct edges *out)
+{
+  double largest = 0.0, height = 0.0;
+  size_t from = 0;
+  bool inside = false;
+  out->count = 0;
+  for (size_t i = 0; i < track->count; i++) {
+    largest = fmax(largest, fabs(track->value[i]));
+  }
+  for (size_t i = 0; i < track->count && largest > 0.0; i++) {
+    double v = fabs(track->value[i]);
+    if (!inside && v > pulse_begins * largest) {
+      inside = true;
+      from = i;
+      height = v;
+    } else if (inside && v < pulse_ends * largest) {
+      inside = false;
+      add_pulse(track, from, i, height, out);
+    }
+    height = inside ? fmax(height, v) : height;
+  }
+  if (inside) {
+    add_pulse(track, from, track->count, height, out);
+  }
+}
+
+static double shortest_between(const struct edges *edges)
+{
+  double shortest = INFINITY;
+  for (size_t i = 1; i < edges->count; i++) {
+    shortest = fmin(shortest, edges->edge[i].time_s - edges->edge[i - 1].time_s);
+  }
+  return shortest;
+}
+
+/* How far an edge may be from where it was seen, on average. */
+static double mean_width(const struct edges *edges)
+{
+  double sum = 0.0;
+  for (size_t i = 0; i < edges->count; i++) {
+    sum += edges->edge[i].width_s;
+  }
+  return edges->count > 0 ? sum / (double)edges->count : 0.0;
+}
+
+/* Edges that lie on each other when those of a are moved by shift_s, and the shift that leaves no
+ * mean difference of them. */
+static struct dea_clock_shift match(const struct edges *a, const struct edges *b, double shift_s,
+                                    double near_s)
+{
+  struct dea_clock_shift out = {.shift_s = shift_s};
+  double sum = 0.0;
+  for (size_t i = 0, k = 0; i < a->count; i++) {
+    double at = a->edge[i].time_s + shift_s;
+    while (k < b->count && b->edge[k].time_s < at - near_s) {
+      k++;
+    }
+    if (k == b->count || b->edge[k].time_s > at + near_s) {
+      continue;
+    }
+    double off = b->edge[k].time_s - at, height = fmax(a->edge[i].height_V, b->edge[k].height_V);
+    if (fabs(a->edge[i].height_V - b->edge[k].height_V) <= same_height * height) {
+      out.edges++;
+      sum += off;
+    }
+  }
+  out.shift_s += out.edges > 0 ? sum / (double)out.edges : 0.0;
+  return out;
+}
+
+void dea_clock_shift_find(const struct dea_samples *a, const struct dea_samples *b,
+                          struct dea_clock_shift *out)
+{
+  struct edges of_a, of_b;
+  find_edges(a, &of_a);
+  find_edges(b, &of_b);
+  double apart = fmin(shortest_between(&of_a), shortest_between(&of_b));
+  double near_s = isfinite(apart) ? near_edge * apart : rounding_s;
+  *out = (struct dea_clock_shift){0};
+  for (size_t i = 0; i < of_a.count; i++) {
+    for (size_t k = 0; k < of_b.count; k++) {
+      double shift_s = of_b.edge[k].time_s - of_a.edge[i].time_s;
+      struct dea_clock_shift one = match(&of_a, &of_b, shift_s, near_s);
+      bool nearer = one.edges == out->edges && fabs(one.shift_s) < fabs(out->shift_s);
+      if (one.edges > out->edges || (one.edges > 0 && nearer)) {
+        *out = one;
+      }
+    }
+  }
+  out->resolution_s = mean_width(&of_a) + mean_width(&of_b);
+  if (fabs(out->shift_s) <= out->resolution_s) { // one clock, as far as is seen
+    out->shift_s = 0;
+  }
+}
+
+// Profiles across the film -----------------------------------------------------------------------
+
+enum { RADIUS, DISPLACEMENT, HEIGHT = 6 }; // of dea_profile_columns
+
+static const double same_voltage = 0.005; // share that counts as the same
+static const double rounding = 1e-9;      // of places that passed through millimetres
+
+/* A voltage as profiles of a model have it: `share` of the second, the rest of the first. */
+struct blend {
+  const struct dea_profile_record *first, *second;
+  double share;
+};
+
+static bool same_places(const struct dea_profile_record *a, const struct dea_profile_record *b)
+{
+  return a->count == b->count && memcmp(a->columns, b->columns, a->count * sizeof *a->columns) == 0;
+}
+
+/* false when the model has no profile at that voltage. */
+static bool find_blend(const struct dea_result *result, const char *model, double voltage_V,
+                       struct blend *out)
+{
+  const struct dea_profile_record *nearest = NULL, *before = NULL;
+  *out = (struct blend){0};
+  for (size_t i = 0; i < result->profile_count; i++) {
+    const struct dea_profile_record *r = &result->profiles[i];
+    if (strcmp(r->model, model) != 0 || r->count == 0) {
+      continue;
+    }
+    double off = fabs(r->voltage_V - voltage_V);
+    if (off <= same_voltage * fabs(voltage_V) &&
+        (nearest == NULL || off < fabs(nearest->voltage_V - voltage_V))) {
+      nearest = r;
+    }
+    if (out->first == NULL && before != NULL && same_places(before, r) &&
+        (before->voltage_V - voltage_V) * (r->voltage_V - voltage_V) < 0.0) {
+      double share = (voltage_V - before->voltage_V) / (r->voltage_V - before->voltage_V);
+      *out = (struct blend){before, r, share};
+    }
+    before = r;
+  }
+  if (nearest != NULL) {
+    *out = (struct blend){nearest, nearest, 0.0};
+  }
+  return out->first != NULL;
+}
+
+static double blend_get(const struct blend *b, size_t column, size_t i)
+{
+  size_t at = column * b->first->count + i;
+  return (1.0 - b->share) * b->first->columns[at] + b->share * b->second->columns[at];
+}
+
+/* Puts the places of a half, from the centre outwards, into x and z, and returns how many. */
+static size_t fill_half(const struct blend *b, enum dea_half half, double *x, double *z)
+{
+  const size_t n = b->first->count;
+  double largest = 0.0;
+  size_t count = 0;
+  for (size_t k = 0; k < n; k++) {
+    const size_t i = half == DEA_HALF_FIBRE ? k : n - 1 - k;
+    const double radius = b->first->columns[RADIUS * n + i], height = blend_get(b, HEIGHT, i);
+    const bool outwards = half == DEA_HALF_FIBRE ? radius >= 0.0 : radius <= 0.0;
+    // the centre has no direction to move in
+    const double at = fabs(radius) > 0.0 ? fabs(radius) + blend_get(b, DISPLACEMENT, i) : 0.0;
+    if (outwards && isfinite(at) && isfinite(height) && (count == 0 || at > x[count - 1])) {
+      x[count] = at;
+      z[count++] = height;
+      largest = fmax(largest, fabs(height));
+    }
+  }
+  return largest > 0.0 && count > 1 ? count : 0;
+}
+
+dea_status dea_film_line_build(struct dea_arena *memory, const struct dea_result *result,
+                               const char *model, double voltage_V, enum dea_half half,
+                               struct dea_film_line *out)
+{
+  struct blend b;
+  *out = (struct dea_film_line){0};
+  if (!find_blend(result, model, voltage_V, &b)) {
+    return DEA_OK;
+  }
+  const size_t half_count = b.first->count;
+  double *x = dea_arena_alloc(memory, 2 * half_count, sizeof *x);
+  double *z = dea_arena_alloc(memory, 2 * half_count, sizeof *z);
+  DEA_TRY(memory->ctx, dea_arena_status(memory));
+  const size_t count = fill_half(&b, half, x + half_count, z + half_count);
+  size_t first = half_count;
+  for (size_t k = 0; k < count; k++) { // the other side, without a centre of its own
+    if (x[half_count + k] > 0.0) {
+      x[--first] = -x[half_count + k];
+      z[first] = z[half_count + k];
+    }
+  }
+  out->samples = (struct dea_samples){half_count + count - first, x + first, z + first, NULL};
+  out->directed = b.first->columns[0] < 0.0; // radii rise from there
+  out->between_records = b.first != b.second;
+  return DEA_OK;
+}
+
+dea_status dea_film_line_compare(struct dea_arena *memory, const struct dea_film_line *line,
+                                 const struct dea_samples *measured, struct dea_misfit *out)
+{
+  const size_t n = line->samples.count;
+  const struct dea_reading reading = {.margin = n > 0 ? rounding * line->samples.at[n - 1] : 0.0};
+  return dea_misfit_compute(memory, dea_point_column_find("centre_z_m"), &line->samples, measured,
+                            &reading, out);
+}

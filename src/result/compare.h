@@ -87,3 +87,46 @@ double dea_interpolate_slope(const double *x, const double *y, size_t count, siz
 /* Value at `at` of the straight pieces through (x[i], y[i]), x never falling (of two equal ones the
  * later counts); NAN outside. */
 double dea_interpolate_linear(const double *x, const double *y, size_t count, double at);
+
+// One clock for two histories --------------------------------------------------------------------
+
+/* What is to be added to the times of `a` so that its pulses lie on those of `b`. */
+struct dea_clock_shift {
+  double shift_s;
+  size_t edges;        // pulses of a that have one of b of their height there
+  double resolution_s; // how well edges are seen: mean time between samples there, of both
+};
+
+/* Finds the shift of voltages in time from the rising edges of the first DEA_CLOCK_EDGES_MAX pulses
+ * of each: a pulse is what is above 5 % of the largest |V|, its edge where half of its own height
+ * is reached, between samples linear. Of the shifts that bring the most edges together it is the
+ * smallest, and 0 when it is below the resolution. edges 0: no pulse of the one is of the height of
+ * one of the other; shift 0 then. */
+enum { DEA_CLOCK_EDGES_MAX = 256 };
+void dea_clock_shift_find(const struct dea_samples *a, const struct dea_samples *b,
+                          struct dea_clock_shift *out);
+
+// Profiles across the film beside measured ones --------------------------------------------------
+
+/* Which half of a model's line from the centre to the frame: model 3d has one along a fibre and one
+ * halfway between two fibres; a model without a direction has the former only. */
+enum dea_half { DEA_HALF_FIBRE, DEA_HALF_BETWEEN, DEA_HALVES };
+
+/* The film as a sensor above it sees it: displacement out of the plane at the places as they moved,
+ * on both sides of the centre, each the same. */
+struct dea_film_line {
+  struct dea_samples samples; // count 0: the model has none, or none that leaves the plane
+  bool directed;              // the model tells the two halves apart
+  bool between_records;       // formed of two voltages that were computed
+};
+
+/* Line of a model of the result at a voltage: of the profile within 0.5 % of it, or linear in the
+ * voltage between the first two neighbours that have it between them. */
+dea_status dea_film_line_build(struct dea_arena *memory, const struct dea_result *result,
+                               const char *model, double voltage_V, enum dea_half half,
+                               struct dea_film_line *out);
+
+/* line minus measured at the measured places, on both sides of the centre; those beyond the film
+ * are left out. */
+dea_status dea_film_line_compare(struct dea_arena *memory, const struct dea_film_line *line,
+                                 const struct dea_samples *measured, struct dea_misfit *out);

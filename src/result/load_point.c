@@ -71,11 +71,6 @@ bool dea_load_point_bounds(const struct dea_load_point *point)
   return (dea_load_point_flags(point) >> DEA_FLAG_BOUND & 1u) != 0;
 }
 
-bool dea_load_point_interpolated(const struct dea_load_point *point)
-{
-  return (dea_load_point_flags(point) >> DEA_FLAG_INTERPOLATED & 1u) != 0;
-}
-
 bool dea_load_point_is_one_of_several(const struct dea_load_point *point)
 {
   const unsigned several = 1u << DEA_FLAG_SLACK | 1u << DEA_FLAG_UNSTABLE | 1u << DEA_FLAG_STATES;

@@ -25,10 +25,6 @@
     "how far a tip is pressed beyond touching the flat film; negative: a gap")                     \
   X(force_N, "N", "mN", 1e3, "force",                                                              \
     "out-of-plane force: on the tip, or the largest along the load line")                          \
-  X(force_interpolation_error_N, "N", "mN", 1e3, "interpolation error of force",                   \
-    "estimated error by interpolation of the force between computed points")                       \
-  X(interpolation_error, "1", "%", 100.0, "interpolation error of the rest",                       \
-    "largest of the other numbers, over what each changes by on its line")                         \
   X(nominal_field_V_per_m, "V/m", "V/um", 1e-6, "nominal field",                                   \
     "V over the unstretched thickness")                                                            \
   X(true_field_V_per_m, "V/m", "V/um", 1e-6, "true field", "largest V over the current thickness") \
@@ -91,7 +87,7 @@
 
 /* What a reader of a point has to know of its numbers (docs/theory/trust.md). A doubt: they are not
  * to be trusted. A danger: they are, but the device would not live. A limit: of what the model
- * answers; some of its numbers are no prediction for this device. A source: where they are from.
+ * answers; some of its numbers are no prediction for this device.
  * X(NAME, word in files, kind, sentence) */
 #define DEA_FLAG_LIST(X)                                                                           \
   X(SLACK, "slack", DOUBT,                                                                         \
@@ -108,11 +104,9 @@
   X(BREAKDOWN, "breakdown", DANGER, "the true field is beyond the film's breakdown field")         \
   X(BOUND, "bound", LIMIT, "z and force are upper bounds of rigid rods, not predictions")          \
   X(PLAIN, "plain", LIMIT,                                                                         \
-    "strain, field and tension are those of the film without its fibres, which hold it back")      \
-  X(INTERPOLATED, "interpolated", SOURCE,                                                          \
-    "interpolated between computed points, within the error that is estimated beside it")
+    "strain, field and tension are those of the film without its fibres, which hold it back")
 
-enum dea_flag_kind { DEA_FLAG_DOUBT, DEA_FLAG_DANGER, DEA_FLAG_LIMIT, DEA_FLAG_SOURCE };
+enum dea_flag_kind { DEA_FLAG_DOUBT, DEA_FLAG_DANGER, DEA_FLAG_LIMIT };
 #define DEA_FLAG_NUMBER(name, word, kind, sentence) DEA_FLAG_##name,
 enum dea_flag { DEA_FLAG_LIST(DEA_FLAG_NUMBER) DEA_FLAG_COUNT };
 #undef DEA_FLAG_NUMBER
@@ -144,7 +138,6 @@ bool dea_load_point_safe(const struct dea_load_point *point);
 bool dea_load_point_bounds(const struct dea_load_point *point);
 /* All its numbers are predictions: valid, and none is a bound. */
 bool dea_load_point_trusted(const struct dea_load_point *point);
-bool dea_load_point_interpolated(const struct dea_load_point *point);
 /* Whether it is one of several states, of which another device may have found another. */
 bool dea_load_point_is_one_of_several(const struct dea_load_point *point);
 

@@ -27,16 +27,30 @@ const struct dea_cell *dea_result_table_cell(const struct dea_result_table *tabl
   return &table->cells[row * table->stride + column_offset(table, column)];
 }
 
-double dea_result_table_number(const struct dea_result_table *table, size_t row, const char *key,
-                               size_t index)
+/* Value of that number in a row's cell of a column; NULL: there is none. */
+static const struct dea_cell *find_cell(const struct dea_result_table *table, size_t row,
+                                        const char *key, size_t index)
 {
   for (size_t c = 0; c < table->type.column_count; c++) {
     if (strcmp(table->type.columns[c].key, key) == 0 && row < table->row_count &&
         index < dea_result_table_values(table, c)) {
-      return dea_result_table_cell(table, row, c)[index].number;
+      return &dea_result_table_cell(table, row, c)[index];
     }
   }
-  return NAN;
+  return NULL;
+}
+
+double dea_result_table_number(const struct dea_result_table *table, size_t row, const char *key,
+                               size_t index)
+{
+  const struct dea_cell *cell = find_cell(table, row, key, index);
+  return cell != NULL ? cell->number : NAN;
+}
+
+const char *dea_result_table_text(const struct dea_result_table *table, size_t row, const char *key)
+{
+  const struct dea_cell *cell = find_cell(table, row, key, 0);
+  return cell != NULL && cell->text != NULL ? cell->text : "";
 }
 
 dea_status dea_result_table_init(struct dea_context *ctx, const struct dea_result_table_type *type,

@@ -96,6 +96,9 @@ const struct dea_cell *dea_result_table_cell(const struct dea_result_table *tabl
  */
 double dea_result_table_number(const struct dea_result_table *table, size_t row, const char *key,
                                size_t index);
+/* Text of a column by its key, "" where the table has none; lent. */
+const char *dea_result_table_text(const struct dea_result_table *table, size_t row,
+                                  const char *key);
 /* Values of a row that belong to a column: 1, or the width of lists. */
 size_t dea_result_table_values(const struct dea_result_table *table, size_t column);
 

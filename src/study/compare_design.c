@@ -286,18 +286,6 @@ static bool ends_trusted(const struct dea_curve *curve)
   return curve->count == 0 || dea_load_point_valid(&curve->points[curve->count - 1]);
 }
 
-/* Keys of so many entries, in two columns from the fourth on where their titles are short. */
-static const char *key_of(size_t entries, size_t longest)
-{
-  static const char *const keys[] = {
-      "above horizontal maxrows 1 samplen 1.5", "above vertical maxrows 2 samplen 1.5",
-      "above vertical maxrows 3 samplen 1.5",   "above vertical maxrows 4 samplen 1.5",
-      "above vertical maxrows 5 samplen 1.5",   "above vertical maxrows 6 samplen 1.5",
-  };
-  size_t rows = entries > 3 && longest <= TITLE_SHORT ? (entries + 1) / 2 : entries;
-  return keys[rows > 6 ? 5 : rows > 0 ? rows - 1 : 0];
-}
-
 /* Adds key entries above the panel: of designs by their colours, with the voltage of their profiles
  * if asked, and of models by their markers where there are several. For a panel that has series. */
 static dea_status add_key(struct dea_context *ctx, struct dea_panel *panel,
@@ -336,7 +324,8 @@ static dea_status add_key(struct dea_context *ctx, struct dea_panel *panel,
     size_t length = strlen(panel->series[i].title);
     longest = length > longest ? length : longest;
   }
-  panel->key = key_of(entries + (panel->dashed != NULL), longest);
+  entries += panel->dashed != NULL;
+  dea_panel_key_above(panel, entries > 3 && longest <= TITLE_SHORT ? (entries + 1) / 2 : entries);
   return DEA_OK;
 }
 

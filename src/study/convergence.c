@@ -28,9 +28,10 @@ struct settings {
 #define AT(member) offsetof(struct settings, member)
 
 static const struct dea_field fields[] = {
-    DEA_STUDY_REFINEMENT_FIELD(
-        "meshes, as in compute.solid.refinement, rising; an order needs three", "[1, 2, 3]",
-        .default_text = "[1, 1.5, 2]", .list_min = 2),
+    DEA_NUMBER_ROW("refinement", AT(refinements), "1", "[1, 2, 3]",
+                   "meshes, as in compute.solid.refinement, rising; an order needs three", .min = 1,
+                   .max = 6, .default_text = "[1, 1.5, 2]",
+                   DEA_LIST(2, MESHES_MAX, struct dea_quantity, AT(refinement_count))),
     DEA_STUDY_STOPS_FIELD("quarters of the highest",
                           "voltages at which the meshes are compared, in the order to be computed",
                           "[2 kV, 4 kV, 6 kV]"),
@@ -50,7 +51,16 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 {
   (void)design;
   const struct settings *settings = given->values;
-  return dea_study_rising(ctx, 0, settings->refinements, settings->refinement_count);
+  for (size_t i = 1; i < settings->refinement_count; i++) {
+    const struct dea_quantity *one = &settings->refinements[i];
+    if (one->si <= one[-1].si) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, one->location,
+                                   "refinement: %g after %g, but each mesh has to be finer than "
+                                   "the one before",
+                                   one->si, one[-1].si));
+    }
+  }
+  return DEA_OK;
 }
 
 static const struct dea_design_section section = {

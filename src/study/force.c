@@ -2,17 +2,13 @@
  * is held there while the voltage goes through the sweep. Depth after depth that gives force
  * against voltage at fixed depths and force against depth at fixed voltages: the actuator's load
  * lines. To a deeper depth the tip goes on from the one before, at 0 V again; otherwise from rest.
- * Voltages between others of a smooth line are interpolated (force_line.h).
  */
 #include "study/force.h"
 #include "base/schema.h"
-#include "base/worker.h"
 #include "result/columns.h"
 #include "result/observation.h"
 #include "result/trust.h"
-#include "study/force_line.h"
 #include "study/study.h"
-#include "study/uncertainty.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -30,7 +26,6 @@ struct settings {
   struct dea_quantity radius_m, edge_radius_m;
   struct dea_quantity depths_m[DEA_DESIGN_STOPS_MAX], preloads_N[DEA_DESIGN_STOPS_MAX];
   size_t depth_count, preload_count;
-  struct dea_quantity tolerance; // 0: every voltage is computed
 };
 
 #define AT(member) offsetof(struct settings, member)
@@ -60,11 +55,6 @@ static const struct dea_field fields[] = {
                    "forces that the tip is pressed to at 0 V, instead of depths or besides",
                    .above_min = true, .max = 100,
                    DEA_LIST(1, DEA_DESIGN_STOPS_MAX, struct dea_quantity, AT(preload_count))),
-    DEA_NUMBER_ROW("tolerance", AT(tolerance), "1", "0",
-                   "estimated error of forces that are interpolated between computed ones, over "
-                   "what the force changes by along its line, where the film has tension; ten "
-                   "times that for all other numbers; 0: every voltage is computed",
-                   .max = 0.1, .default_text = "0.002"),
 };
 
 static const struct dea_record record = {study_name,
@@ -166,13 +156,6 @@ dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type
       ctx, find_preload(ctx, type, model, &tip, force->preloads_N[stop - depths].si, tip.radius_m));
 }
 
-/* What is interpolated at most; bands are of small differences of lines. */
-static double tolerance_of(const struct dea_design *design)
-{
-  const struct settings *force = settings_of(design);
-  return force != NULL && !dea_uncertainty_written(design) ? force->tolerance.si : 0;
-}
-
 /* A model that goes from stop to stop, and where it was last pressed to at 0 V. */
 struct press {
   const struct dea_model_type *type;
@@ -208,12 +191,11 @@ static dea_status ready(struct dea_context *ctx, struct press *p, size_t stop)
   return status;
 }
 
-/* Keeps where the tip is pressed to if its line or the next stop goes on from there. */
+/* Keeps where the tip is pressed to if the next stop goes on from there. */
 static dea_status keep_pressed(struct dea_context *ctx, struct press *p, size_t stop)
 {
   struct dea_state now = {0};
-  const struct dea_design *design = p->result->design;
-  if (p->type->load == NULL || (!goes_deeper(design, stop + 1) && tolerance_of(design) <= 0)) {
+  if (p->type->load == NULL || !goes_deeper(p->result->design, stop + 1)) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_save(ctx, p->type, p->model, &now));
@@ -230,154 +212,30 @@ static dea_status press_in(struct dea_context *ctx, struct press *p, size_t stop
   return keep_pressed(ctx, p, stop);
 }
 
-/* All voltages from where the tip is pressed in. */
-static dea_status measure_line(struct dea_context *ctx, struct press *p, struct dea_curve *curve)
-{
-  const struct dea_design *design = p->result->design;
-  const struct dea_force_line line = {.type = p->type,
-                                      .model = p->model,
-                                      .device = p->result->device,
-                                      .pressed = p->kept ? &p->at : NULL,
-                                      .voltages_V = design->compute.voltages_V,
-                                      .count = design->compute.voltage_count,
-                                      .tolerance = tolerance_of(design)};
-  return dea_force_line_compute(ctx, &line, curve);
-}
-
-/* The same in another process, which hands back its points. */
-static dea_status line_aside(struct dea_context *ctx, void *user, struct dea_bytes *out)
-{
-  struct dea_curve line = {.memory = {.ctx = ctx}};
-  dea_status status = measure_line(ctx, user, &line);
-  for (size_t i = 0; i < line.count; i++) {
-    const struct dea_load_point *point = &line.points[i];
-    const size_t count = point->monitors != NULL ? point->monitors->count : 0;
-    dea_bytes_add(out, point, sizeof *point);
-    dea_bytes_add(out, &count, sizeof count);
-    dea_bytes_add(out, count > 0 ? point->monitors->at : NULL,
-                  count * sizeof point->monitors->at[0]);
-  }
-  dea_free(ctx, line.points);
-  dea_arena_free(&line.memory);
-  return status;
-}
-
-/* Lines of stops that processes beside this one compute. */
-struct lines {
-  struct dea_worker at[DEA_DESIGN_STOPS_MAX]; // [begun]
-  size_t begun;
-  size_t most; // processes, with this one, that compute at the same time
-};
-
-static bool one_failed(const struct lines *lines)
-{
-  bool failed = false;
-  for (size_t i = 0; i < lines->begun; i++) {
-    failed = failed || dea_worker_failed(&lines->at[i]);
-  }
-  return failed;
-}
-
-/* Presses in for one stop after the other, since each goes on from the one before, and begins its
- * line beside that, or computes it. No more after a line that failed. */
-static dea_status measure_lines(struct dea_context *ctx, struct press *press, size_t stops,
-                                const char *what, struct lines *lines, struct dea_curve *curve)
-{
-  for (size_t i = 0; i < stops && !one_failed(lines); i++) {
-    DEA_TRY(ctx, press_in(ctx, press, i));
-    lines->most = dea_context_is_alone(ctx) ? lines->most : 1; // known once there is a model
-    if (lines->most > 1 && stops > 1) {
-      DEA_TRY(ctx, dea_worker_start(ctx, line_aside, press, &lines->at[i]));
-      lines->begun++;
-      DEA_TRY(ctx, dea_worker_wait(ctx, lines->at, lines->begun, lines->most - 1));
-    } else {
-      DEA_TRY(ctx, measure_line(ctx, press, curve));
-      dea_progress(ctx, what, i + 1, stops);
-    }
-  }
-  return DEA_OK;
-}
-
-/* One point and what its monitors show, from *at on; false: there is no whole one. */
-static bool next_point(const char *bytes, size_t length, size_t *at, struct dea_arena *memory,
-                       struct dea_load_point *out)
-{
-  const size_t head = sizeof *out + sizeof(size_t), one = sizeof out->monitors->at[0];
-  size_t count;
-  if (*at + head > length) {
-    return false;
-  }
-  memcpy(out, bytes + *at, sizeof *out);
-  memcpy(&count, bytes + *at + sizeof *out, sizeof count);
-  *at += head;
-  out->monitors = NULL;
-  if (count > (length - *at) / one) {
-    return false;
-  }
-  if (count > 0) {
-    out->monitors = dea_arena_alloc(memory, 1, sizeof *out->monitors + count * one);
-  }
-  if (out->monitors != NULL) {
-    out->monitors->count = count;
-    memcpy(out->monitors->at, bytes + *at, count * one);
-  }
-  *at += count * one;
-  return true;
-}
-
-/* The points of one line into the curve, as far as it has come. */
-static dea_status gather_line(struct dea_context *ctx, const struct dea_worker *line,
-                              struct dea_curve *curve)
-{
-  const char *bytes;
-  size_t length;
-  struct dea_load_point point;
-  dea_status status = dea_worker_collect(ctx, line, &bytes, &length);
-  struct dea_arena memory = {.ctx = ctx};
-  dea_status added = DEA_OK;
-  for (size_t at = 0; added == DEA_OK && next_point(bytes, length, &at, &memory, &point);) {
-    added = dea_curve_add_point(ctx, curve, &point);
-  }
-  added = added == DEA_OK ? dea_arena_status(&memory) : added;
-  dea_arena_free(&memory);
-  DEA_TRY(ctx, added);
-  return status;
-}
-
-/* Waits for the lines beside, and has them in order up to the first that failed, if before that was
- * `status`. */
-static dea_status gather(struct dea_context *ctx, struct lines *lines, size_t stops,
-                         const char *what, dea_status status, struct dea_curve *curve)
-{
-  char why[1024];
-  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-  dea_status first = dea_worker_wait(ctx, lines->at, lines->begun, 0);
-  for (size_t i = 0; i < lines->begun; i++) {
-    first = first == DEA_OK ? gather_line(ctx, &lines->at[i], curve) : first;
-    if (first == DEA_OK) {
-      dea_progress(ctx, what, i + 1, stops);
-    }
-    dea_worker_end(&lines->at[i]);
-  }
-  return first == DEA_OK && status != DEA_OK ? dea_fail(ctx, status, "%s", why) : first;
-}
-
+/* Presses in for one stop after the other, since each goes on from the one before, and goes through
+ * all voltages from there. */
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, const struct dea_study_services *services,
-                      struct dea_result *result)
+                      struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: it has no tip
+  const struct dea_design *design = result->design;
+  const size_t stops = dea_force_stops(design);
   struct press press = {.type = type, .result = result};
-  struct lines lines = {.most = services->processes};
-  size_t stops = dea_force_stops(result->design);
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &curve));
-  DEA_TRY(ctx, dea_device_columns_add(ctx, result->device)); // before processes begin beside
   snprintf(what, sizeof what, "%s force", type->name);
-  dea_status status = measure_lines(ctx, &press, stops, what, &lines, curve);
-  if (lines.begun > 0) {
-    status = gather(ctx, &lines, stops, what, status, curve);
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < stops && status == DEA_OK; i++) {
+    status = press_in(ctx, &press, i);
+    if (status == DEA_OK) {
+      status =
+          dea_study_add_points(ctx, type, press.model, result->device, design->compute.voltages_V,
+                               design->compute.voltage_count, curve);
+    }
+    if (status == DEA_OK) {
+      dea_progress(ctx, what, i + 1, stops);
+    }
   }
   dea_state_free_values(ctx, &press.at);
   if (press.model != NULL) {
@@ -444,15 +302,6 @@ static struct dea_curve one_stop(const struct stops *stops, size_t i)
   return part;
 }
 
-static size_t count_computed(const struct dea_curve *curve)
-{
-  size_t n = 0;
-  for (size_t i = 0; i < curve->count; i++) {
-    n += dea_load_point_interpolated(&curve->points[i]) ? 0 : 1;
-  }
-  return n;
-}
-
 /* Look of the i-th curve, without title. */
 static struct dea_series stop_style(size_t i)
 {
@@ -460,25 +309,6 @@ static struct dea_series stop_style(size_t i)
                                           DEA_PURPLE, DEA_ORANGE,     DEA_BLACK};
   return (struct dea_series){
       .style = DEA_LINE_MARKED, .colour = order[i % 6], .marker = (int)(i % 6)};
-}
-
-/* Markers at the computed points of a line that has others, as far as it is to be trusted. */
-static dea_status add_computed(struct dea_context *ctx, struct dea_panel *panel,
-                               const struct dea_curve *curve, const struct dea_series *look)
-{
-  struct dea_series *series, marks = *look;
-  marks.style = DEA_MARKERS;
-  marks.secondary = true;
-  marks.title[0] = '\0';
-  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, &marks, &series));
-  for (size_t i = 0; i < curve->count; i++) {
-    const struct dea_load_point *p = &curve->points[i];
-    if (!dea_load_point_interpolated(p) && dea_load_point_valid(p)) {
-      series->values[i] = 1e-3 * p->voltage_V;
-      series->values[curve->count + i] = 1e3 * p->force_N;
-    }
-  }
-  return DEA_OK;
 }
 
 static dea_status build_tip_force(struct dea_context *ctx, const struct dea_result *result,
@@ -490,13 +320,10 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
   find_stops(first_curve(result), &stops);
   for (size_t i = 0; i < stops.count; i++) {
     struct dea_curve part = one_stop(&stops, i);
-    bool all = count_computed(&part) == part.count;
     struct dea_series look = stop_style(i);
-    look.style = all ? look.style : DEA_LINE;
     snprintf(look.title, sizeof look.title, "%.4g mm", 1e3 * part.points[0].tip_depth_m);
     DEA_TRY(ctx, dea_figure_add(ctx, panel, &part, column, dea_point_columns[column].factor, 0.0,
                                 &look));
-    DEA_TRY(ctx, !all ? add_computed(ctx, panel, &part, &look) : DEA_OK);
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Force on the tip {/:Italic F} (mN)");
   dea_panel_voltage_axis(panel);
@@ -507,14 +334,14 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
 enum { SHOWN_MAX = 6 };
 
 /* Force over depth at the k-th voltage of each stop that came so far; a line with a point that is
- * not to be trusted, or is interpolated, says so. */
+ * not to be trusted says so. */
 static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
                            const struct stops *stops, size_t k, size_t number)
 {
   const struct dea_series look = stop_style(number);
   struct dea_series *series;
   const struct dea_load_point *points = stops->curve->points;
-  bool trusted = true, computed = true;
+  bool trusted = true;
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, stops->count, &look, &series));
   for (size_t i = 0; i < stops->count; i++) {
     size_t at = stops->first[stops->by_depth[i]] + k;
@@ -523,11 +350,10 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
       series->values[i] = 1e3 * points[at].tip_depth_m;
       series->values[stops->count + i] = 1e3 * points[at].force_N;
       trusted = trusted && dea_load_point_valid(&points[at]);
-      computed = computed && !dea_load_point_interpolated(&points[at]);
     }
   }
-  snprintf(series->title, sizeof series->title, "%.4g kV%s%s", 1e-3 * points[k].voltage_V,
-           trusted ? "" : " (?)", computed ? "" : " (i)");
+  snprintf(series->title, sizeof series->title, "%.4g kV%s", 1e-3 * points[k].voltage_V,
+           trusted ? "" : " (?)");
   return DEA_OK;
 }
 
@@ -553,13 +379,11 @@ static dea_status build_load_line(struct dea_context *ctx, const struct dea_resu
 }
 
 static const struct dea_figure figures[] = {
-    DEA_STUDY_FIGURE(
-        "tip_force", study_name, build_tip_force,
-        "force on the tip against the voltage, for each depth that it is held at (where "
-        "voltages are interpolated, markers are at the computed ones)"),
+    DEA_STUDY_FIGURE("tip_force", study_name, build_tip_force,
+                     "force on the tip against the voltage, for each depth that it is held at"),
     DEA_STUDY_FIGURE("load_line", study_name, build_load_line,
                      "force on the tip against the depth that it is held at, for some voltages (?: "
-                     "not to be trusted at one of the depths, i: interpolated at one)"),
+                     "not to be trusted at one of the depths)"),
 };
 
 // Table ------------------------------------------------------------------------------------------
@@ -568,22 +392,16 @@ static const struct dea_result_column line_columns[] = {
     DEA_NUMBER_COLUMN("tip_depth_m", "m", "mm", 1e3, "depth",
                       "how far the tip is pressed beyond touching the flat film"),
     DEA_RESULT_COLUMN(COUNT, "voltages", "voltages", .meaning = "points of the line"),
-    DEA_RESULT_COLUMN(COUNT, "computed", "computed",
-                      .meaning = "how many of them are; the others are interpolated"),
     DEA_NUMBER_COLUMN("first_force_N", "N", "mN", 1e3, "first force",
                       "force on the tip at the first voltage"),
     DEA_NUMBER_COLUMN("last_force_N", "N", "mN", 1e3, "last force", "and at the last one"),
     DEA_NUMBER_COLUMN("trusted_voltage_V", "V", "kV", 1e-3, "trusted to",
                       "last voltage before the first point that is not to be trusted"),
-    DEA_NUMBER_COLUMN("force_interpolation_error_N", "N", "mN", 1e3, "error of force",
-                      "largest estimated error of a force that is interpolated"),
-    DEA_NUMBER_COLUMN("interpolation_error", "1", "%", 100, "of the rest",
-                      "largest of the other numbers, over what each changes by on the line"),
 };
-static const struct dea_result_table_type line_table = DEA_RESULT_TABLE(
-    study_name, "lines", line_columns,
-    .title = "force on the tip at the first and the last voltage, and how many points are computed",
-    .where = DEA_IN_JSON | DEA_IN_SCREEN);
+static const struct dea_result_table_type line_table =
+    DEA_RESULT_TABLE(study_name, "lines", line_columns,
+                     .title = "force on the tip at the first and the last voltage",
+                     .where = DEA_IN_JSON | DEA_IN_SCREEN);
 
 /* A film that is pressed further than it stretches lets the tip pass: no force, and nothing amiss
  * in its state. */
@@ -610,17 +428,10 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &line_table, model, 0, &table));
   for (size_t i = 0; i < stops.count; i++) {
     const struct dea_curve part = one_stop(&stops, i);
-    double force_N = NAN, rest = NAN;
-    for (size_t k = 0; k < part.count; k++) {
-      force_N = fmax(force_N, part.points[k].force_interpolation_error_N);
-      rest = fmax(rest, part.points[k].interpolation_error);
-    }
-    DEA_TRY(ctx,
-            DEA_TABLE_ADD(
-                ctx, table, DEA_CELL(part.points[0].tip_depth_m), DEA_CELL((double)part.count),
-                DEA_CELL((double)count_computed(&part)), DEA_CELL(part.points[0].force_N),
-                DEA_CELL(part.points[part.count - 1].force_N),
-                DEA_CELL(dea_curve_trust(&part).trusted_V), DEA_CELL(force_N), DEA_CELL(rest)));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(part.points[0].tip_depth_m),
+                               DEA_CELL((double)part.count), DEA_CELL(part.points[0].force_N),
+                               DEA_CELL(part.points[part.count - 1].force_N),
+                               DEA_CELL(dea_curve_trust(&part).trusted_V)));
     DEA_TRY(ctx, warn_of_no_touch(ctx, model, &part.points[0]));
   }
   return DEA_OK;
@@ -641,7 +452,7 @@ const struct dea_study dea_study_force = {
     .own_models = true,
     .ability = "indentation by a tip",
     .able_by = offsetof(struct dea_model_type, indent),
-    .run_with = run,
+    .run = run,
     .tables = tables,
     .figures = figures,
     .figure_count = sizeof figures / sizeof figures[0],

@@ -37,17 +37,9 @@ struct settings {
 static const char *const directions[] = {"x", "y", "z", "turn_x", "turn_y", "turn_z", NULL};
 
 #define ENDS(which, begin, end, in, what, first, last)                                             \
-  {.key = begin,                                                                                   \
-   .kind = DEA_FIELD_NUMBER,                                                                       \
-   .offset = AT(from[which]),                                                                      \
-   .unit = in,                                                                                     \
-   .absent_text = "none",                                                                          \
-   .doc = what ", where the line begins",                                                          \
-   .example = first},                                                                              \
-  {                                                                                                \
-    .key = end, .kind = DEA_FIELD_NUMBER, .offset = AT(to[which]), .unit = in,                     \
-    .absent_text = "none", .doc = "where it ends", .example = last                                 \
-  }
+  DEA_NUMBER_ROW(begin, AT(from[which]), in, first, what ", where the line begins",                \
+                 .absent_text = "none"),                                                           \
+      DEA_NUMBER_ROW(end, AT(to[which]), in, last, "where it ends", .absent_text = "none")
 
 static const struct dea_field fields[] = {
     DEA_LABEL_ROW("body", AT(body), "hub",
@@ -221,7 +213,7 @@ static const struct settings *settings_of(const struct dea_design *design)
   return given != NULL ? given->values : NULL;
 }
 
-bool dea_loading_asked(const struct dea_design *design)
+static bool asked(const struct dea_design *design)
 {
   const struct settings *settings = settings_of(design);
   return settings != NULL && range_of(settings) != RANGES;
@@ -230,10 +222,6 @@ bool dea_loading_asked(const struct dea_design *design)
 // Tables -----------------------------------------------------------------------------------------
 
 #define VOLTAGE DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the line")
-#define POINT(what)                                                                                \
-  {                                                                                                \
-    .key = "point", .kind = DEA_CELL_COUNT, .title = "point", .meaning = what                      \
-  }
 static const char degree[] = "deg";
 static const double degrees = 57.29577951308232;
 
@@ -242,7 +230,7 @@ enum value { AT_SHIFT, AT_TURN, OF_FORCE, OF_MOMENT, AT_PRESSURE, AT_CHARGE, VAL
 
 static const struct dea_result_column point_columns[] = {
     VOLTAGE,
-    POINT("number of the point, from 1"),
+    DEA_RESULT_COLUMN(COUNT, "point", "point", .meaning = "number of the point, from 1"),
     DEA_RESULT_COLUMN(FLAG, "back", "back", .meaning = "on the way back"),
     DEA_NUMBER_COLUMN("shift_m", "m", "mm", 1e3, "shift", "of the body along the direction"),
     DEA_NUMBER_COLUMN("turn_rad", "rad", degree, degrees, "turn", "of the body"),
@@ -284,18 +272,11 @@ static const struct dea_result_column line_columns[] = {
 };
 
 static const struct dea_result_table_type tables[] = {
-    {.study = study_name,
-     .name = "points",
-     .title = "Loading",
-     .where = DEA_IN_JSON | DEA_IN_CSV,
-     .columns = point_columns,
-     .column_count = COUNT(point_columns)},
-    {.study = study_name,
-     .name = "lines",
-     .title = "Lines of force against displacement",
-     .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
-     .columns = line_columns,
-     .column_count = COUNT(line_columns)},
+    DEA_RESULT_TABLE(study_name, "points", point_columns, .title = "Loading",
+                     .where = DEA_IN_JSON | DEA_IN_CSV),
+    DEA_RESULT_TABLE(study_name, "lines", line_columns,
+                     .title = "Lines of force against displacement",
+                     .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN),
 };
 enum { POINTS, LINES, TABLES };
 
@@ -722,15 +703,8 @@ static size_t part_end(const struct dea_result_table *table, size_t first)
 /* Whether there is nothing against a row but that its film is a membrane, which all rows share. */
 static bool is_sound(const struct dea_result_table *table, size_t row)
 {
-  static const char key[] = "flags";
-  const unsigned preview = 1u << DEA_FLAG_PREVIEW;
-  for (size_t c = 0; c < table->type.column_count; c++) {
-    if (strcmp(table->type.columns[c].key, key) == 0) {
-      unsigned flags = dea_flags_of_text(dea_result_table_cell(table, row, c)->text);
-      return (flags & ~preview) == 0;
-    }
-  }
-  return true; // of a run from before there were flags
+  return (dea_flags_of_text(dea_result_table_text(table, row, "flags")) &
+          ~(1u << DEA_FLAG_PREVIEW)) == 0;
 }
 
 /* The rows that are not sound, and the next ones, so that no gap is left. */
@@ -822,7 +796,7 @@ static const struct dea_figure figures[] = {
 const struct dea_study dea_study_loading = {
     .name = study_name,
     .keys = &section,
-    .asked = dea_loading_asked,
+    .asked = asked,
     .needs = "compute.loading.from and to, or turn_, force_, pressure_, charge_from and to",
     .own_models = true,
     .ability = "bodies and pressures",

@@ -18,21 +18,15 @@ static const char study_name[] = "states";
 
 // Keys -------------------------------------------------------------------------------------------
 
-enum { PUSHES_MAX = 6, MESHES_MAX = 6 };
+enum { PUSHES_MAX = 6 };
 
 /* Settings of compute.states. */
 struct settings {
   struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: quarters of the highest
   struct dea_quantity pushes_m[PUSHES_MAX];             // rising
-  struct dea_quantity refinements[MESHES_MAX];          // rising; none: states stay on their mesh
-  size_t voltage_count, push_count, refinement_count;
+  size_t voltage_count, push_count;
   struct dea_quantity modes, most, apart_m;
-  struct dea_choice refined; // enum refined
-  struct dea_choice relaxed; // 1: the mean shape of a film that wrinkles freely too
 };
-
-enum refined { REFINED_ALL, REFINED_TIPS };
-static const char *const parts[] = {"all", "tips", NULL}; // in the order of enum refined
 
 #define AT(member) offsetof(struct settings, member)
 
@@ -55,16 +49,6 @@ static const struct dea_field fields[] = {
     DEA_INTEGER_ROW("max_states", AT(most), "8",
                     "states at a voltage from which on no more are looked for there",
                     .alias = "most", .min = 1, .max = 100, .default_text = "8"),
-    DEA_STUDY_REFINEMENT_FIELD(
-        "finer meshes that each state is transferred to, as in compute.solid.refinement, rising",
-        "[1.5, 2, 3]", .absent_text = "none", .list_min = 1),
-    DEA_CHOICE_ROW(
-        "refined", AT(refined), parts, "tips",
-        "what the finer meshes refine: all of it, or what compute.solid.tip_refinement does",
-        .default_text = "all"),
-    DEA_CHOICE_ROW("relaxed", AT(relaxed), dea_no_yes, "no",
-                   "mean shape of a film that wrinkles freely (a membrane), beside the states",
-                   .default_text = "yes"),
 };
 
 static const struct dea_record record = {
@@ -73,38 +57,8 @@ static const struct dea_record record = {
     "of a slack film at voltages (3d)",
     fields, COUNT(fields)};
 
-/* Refinement of a model's mesh as the finer ones count it. */
-static double refinement_of(const struct settings *settings, const struct dea_model_settings *model)
-{
-  double all = fmax(1, model->refinement);
-  return settings->refined.value == REFINED_TIPS ? fmax(all, model->tip_refinement) : all;
-}
-
-static void refine_model(const struct settings *settings, double refinement,
-                         struct dea_model_settings *model)
-{
-  if (settings->refined.value == REFINED_TIPS) {
-    model->tip_refinement = refinement;
-  } else {
-    model->refinement = refinement;
-  }
-}
-
-/* Each mesh is finer than the one before, the first one than the design's. */
-static dea_status check(struct dea_context *ctx, const struct dea_design *design,
-                        const struct dea_settings *given)
-{
-  const struct settings *settings = given->values;
-  // a design with errors has none of the other settings yet
-  const struct dea_model_settings model = {.refinement = design->compute.solid.refinement.si,
-                                           .tip_refinement =
-                                               design->compute.solid.tip_refinement.si};
-  return dea_study_rising(ctx, refinement_of(settings, &model), settings->refinements,
-                          settings->refinement_count);
-}
-
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
+    .key = study_name, .record = &record, .size = sizeof(struct settings)};
 
 // States -----------------------------------------------------------------------------------------
 
@@ -125,7 +79,6 @@ struct state {
   bool searched;  // or given up
   size_t copies;  // of it by symmetry that were found
   size_t variant; // of the result that it belongs to, from 0 in this study
-  int is;         // itself; on a finer mesh the one that it comes to, NONE: it was lost
 };
 
 struct search {
@@ -135,41 +88,24 @@ struct search {
   const struct settings *settings;
   struct dea_result *result;
   double voltages_V[DEA_DESIGN_STOPS_MAX];
-  size_t level_count;   // reached
-  struct state *states; // on a finer mesh those of the design's, in the same order
+  size_t level_count; // reached
+  struct state *states;
   size_t count, capacity;
-  struct dea_model_size size; // of the mesh
-  double refinement;
-  bool whole; // no plane of symmetry: each fibre goes its own way
-  int parts;  // equal sectors that are pushed one by one; 0: none
+  size_t first_variant; // of the result, of all that are added
+  bool whole;           // no plane of symmetry: each fibre goes its own way
+  int parts;            // equal sectors that are pushed one by one; 0: none
 };
 
-/* Lets go of all but what the states say of themselves. */
-static void forget_films(struct search *s)
+static void free_search(struct search *s)
 {
   for (size_t i = 0; i < s->count; i++) {
     dea_state_free_values(s->ctx, &s->states[i].saved);
     dea_free(s->ctx, s->states[i].u);
-    s->states[i].saved = (struct dea_state){0};
-    s->states[i].u = NULL;
   }
   if (s->model != NULL) {
     s->type->destroy(s->ctx, s->model);
-    s->model = NULL;
   }
-}
-
-static void free_search(struct search *s)
-{
-  forget_films(s);
   dea_free(s->ctx, s->states);
-}
-
-static void measure(struct search *s)
-{
-  if (s->type->size != NULL) {
-    s->type->size(s->model, &s->size);
-  }
 }
 
 /* Displacements of the film where the model is, owned by the caller. */
@@ -269,7 +205,6 @@ static dea_status add_state(struct search *s, size_t level, const struct dea_loa
                           .u = u,
                           .point_count = count,
                           .level = level,
-                          .is = (int)s->count,
                           .stiffness_N_per_m4 = NAN,
                           .leads = {NONE, NONE}};
   snprintf(state->reached, sizeof state->reached, "%s", reached);
@@ -439,122 +374,6 @@ static dea_status search_all(struct search *s)
   return DEA_OK;
 }
 
-// Finer meshes -----------------------------------------------------------------------------------
-
-/* Which of the states of its level, of those that came to the mesh before it, the i-th one is. */
-static int same_on_mesh(const struct search *mesh, size_t i)
-{
-  const struct state *one = &mesh->states[i];
-  for (size_t k = 0; k < i; k++) {
-    const struct state *other = &mesh->states[k];
-    if (other->level == one->level && other->is == (int)k &&
-        distance_m(other->u, one->u, one->point_count) < mesh->settings->apart_m.si) {
-      return (int)k;
-    }
-  }
-  return (int)i;
-}
-
-/* The i-th state is where the mesh's model is. */
-static dea_status keep_transferred(struct search *mesh, size_t i,
-                                   const struct dea_load_point *point)
-{
-  struct state *one = &mesh->states[i];
-  one->point = *point;
-  one->is = (int)i;
-  DEA_TRY(mesh->ctx, store_film(mesh, &one->u, &one->point_count));
-  return keep_model(mesh, &one->saved);
-}
-
-/* The i-th state from the mesh before. */
-static dea_status transfer_one(struct search *before, struct search *mesh, size_t i)
-{
-  struct dea_context *ctx = mesh->ctx;
-  struct dea_load_point point;
-  bool found = false;
-  DEA_TRY(ctx, dea_model_load(ctx, mesh->type, before->model, &before->states[i].saved));
-  dea_status status = mesh->type->transfer(ctx, mesh->model, before->model, &point, &found);
-  DEA_TRY(ctx, status == DEA_OK && found ? keep_transferred(mesh, i, &point) : DEA_OK);
-  return forgive(ctx, status);
-}
-
-/* A state that was lost, along its branch from the level above or below, on this mesh. */
-static dea_status follow_one(struct search *mesh, size_t i)
-{
-  for (int direction = UP; direction <= DOWN && mesh->states[i].is == NONE; direction++) {
-    int near = mesh->states[i].leads[direction];
-    struct dea_load_point point;
-    if (near == NONE || mesh->states[near].leads[direction == UP ? DOWN : UP] != (int)i ||
-        mesh->states[near].is != near) {
-      continue;
-    }
-    DEA_TRY(mesh->ctx,
-            dea_model_load(mesh->ctx, mesh->type, mesh->model, &mesh->states[near].saved));
-    dea_status status =
-        mesh->type->solve(mesh->ctx, mesh->model, mesh->voltages_V[mesh->states[i].level], &point);
-    if (status == DEA_OK && point.stable) {
-      DEA_TRY(mesh->ctx, keep_transferred(mesh, i, &point));
-    }
-    DEA_TRY(mesh->ctx, forgive(mesh->ctx, status));
-  }
-  return DEA_OK;
-}
-
-/* All states from the mesh before to this one: each by itself, what is lost along its branch, up
- * and then down. */
-static dea_status transfer_all(struct search *before, struct search *mesh)
-{
-  enum { BY_ITSELF, FOLLOWED_UP, FOLLOWED_DOWN, PASSES };
-  char what[DEA_NAME_SIZE + 48];
-  snprintf(what, sizeof what, "%s states at refinement %.4g", mesh->type->name, mesh->refinement);
-  for (size_t k = 0; k < PASSES * mesh->count; k++) {
-    size_t pass = k / mesh->count, at = k % mesh->count,
-           i = pass == FOLLOWED_DOWN ? mesh->count - 1 - at : at;
-    if (dea_interrupted_anywhere(mesh->ctx)) {
-      return dea_fail(mesh->ctx, DEA_E_INTERRUPTED, "interrupted as states went to a finer mesh");
-    }
-    if (pass == BY_ITSELF && before->states[i].is == (int)i) {
-      DEA_TRY(mesh->ctx, transfer_one(before, mesh, i));
-    } else if (pass != BY_ITSELF && mesh->states[i].is == NONE) {
-      DEA_TRY(mesh->ctx, follow_one(mesh, i));
-    }
-    dea_progress(mesh->ctx, what, k + 1, PASSES * mesh->count);
-  }
-  for (size_t i = 0; i < mesh->count; i++) {
-    int was = before->states[i].is;
-    if (was != NONE && was != (int)i) { // one with another since an earlier mesh
-      mesh->states[i].point = mesh->states[was].point;
-      mesh->states[i].is = mesh->states[was].is;
-    } else if (mesh->states[i].is != NONE) {
-      mesh->states[i].is = same_on_mesh(mesh, i);
-    }
-  }
-  return DEA_OK;
-}
-
-/* A finer mesh that no state has come to yet. */
-static dea_status build_mesh(const struct search *s, double refinement, struct search *mesh)
-{
-  struct dea_model_settings settings = dea_model_settings_of(s->result->design);
-  refine_model(s->settings, refinement, &settings);
-  *mesh = *s;
-  mesh->model = NULL;
-  mesh->refinement = refinement;
-  mesh->states = dea_alloc(s->ctx, s->count, sizeof *mesh->states);
-  mesh->count = mesh->states != NULL ? s->count : 0;
-  DEA_TRY_MEMORY(mesh->states != NULL);
-  for (size_t i = 0; i < s->count; i++) {
-    const struct state *of = &s->states[i];
-    mesh->states[i] = (struct state){.point = dea_load_point_empty(),
-                                     .level = of->level,
-                                     .leads = {of->leads[UP], of->leads[DOWN]},
-                                     .is = NONE};
-  }
-  DEA_TRY(s->ctx, s->type->create(s->ctx, s->result->device, &settings, &mesh->model));
-  measure(mesh);
-  return DEA_OK;
-}
-
 // Result -----------------------------------------------------------------------------------------
 
 /* Whether two states at neighbouring levels are of one branch: each leads to the other. */
@@ -614,17 +433,12 @@ static dea_status append_state(struct search *s, size_t i, size_t *branches)
     ++*branches;
     DEA_TRY(ctx, dea_result_add_variant(ctx, s->result, s->type->name, study_name, name, &variant));
     if (s->type->size != NULL) {
-      variant->size = s->size;
+      s->type->size(s->model, &variant->size);
       variant->refinement = dea_model_settings_of(s->result->design).refinement;
     }
     DEA_TRY(ctx, dea_curve_end(ctx, &variant->curve, DEA_OK));
   }
-  for (size_t k = 0; k < s->result->variant_count; k++) {
-    struct dea_variant *one = &s->result->variants[k];
-    variant = dea_variant_is(one, s->type->name, study_name) && strcmp(one->name, name) == 0
-                  ? one
-                  : variant;
-  }
+  variant = &s->result->variants[s->first_variant + state->variant];
   if (s->type->profile != NULL || s->type->observe != NULL) {
     DEA_TRY(ctx, dea_model_load(ctx, s->type, s->model, &state->saved));
   }
@@ -642,37 +456,22 @@ enum { ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN };
 #define UM(name, head, what) DEA_NUMBER_COLUMN(name, "m", "um", 1e6, head, what)
 #define KV(name, head, what) DEA_NUMBER_COLUMN(name, "V", "kV", 1e-3, head, what)
 #define UJ(name, head, what) DEA_NUMBER_COLUMN(name, "J", "uJ", 1e6, head, what)
-/* Columns of a state on whatever mesh. */
-#define SHAPE                                                                                      \
-  UM("centre_z_m", "centre", "displacement of the centre"),                                        \
-      UM("fibre_tip_z_m", "fibre tip", "displacement of the fibre tip"),                           \
-      UM("electrode_edge_u_m", "edge", "radial displacement of the electrode's edge"),             \
-      UM("highest_z_m", "highest", "largest displacement out of the plane"),                       \
-      UM("lowest_z_m", "lowest", "smallest displacement out of the plane")
-#define SHAPE_OF(p)                                                                                \
-  {.number = (p)->centre_z_m}, {.number = (p)->fibre_tip_z_m},                                     \
-      {.number = (p)->electrode_edge_u_m}, {.number = (p)->highest_z_m},                           \
-  {                                                                                                \
-    .number = (p)->lowest_z_m                                                                      \
-  }
-#define FLAGS                                                                                      \
-  {                                                                                                \
-    .key = "flags", .kind = DEA_CELL_TEXT, .title = "flags",                                       \
-    .meaning = "how far the numbers are to be trusted"                                             \
-  }
-
 static const struct dea_result_column state_columns[] = {
     KV("voltage_V", "V", "voltage"),
     DEA_TEXT_COLUMN("state", "state",
                     "its branch: of the same letter where each leads to the other"),
     UJ("energy_J", "energy", "potential energy, 0 at rest"),
     UJ("above_J", "above the lowest", "energy above that of the lowest state found"),
-    SHAPE,
+    UM("centre_z_m", "centre", "displacement of the centre"),
+    UM("fibre_tip_z_m", "fibre tip", "displacement of the fibre tip"),
+    UM("electrode_edge_u_m", "edge", "radial displacement of the electrode's edge"),
+    UM("highest_z_m", "highest", "largest displacement out of the plane"),
+    UM("lowest_z_m", "lowest", "smallest displacement out of the plane"),
     DEA_RESULT_COLUMN(COUNT, "unstable_modes", "unstable modes",
                       .meaning = "negative modes of the tangent"),
     DEA_NUMBER_COLUMN("stiffness_N_per_m4", "N/m^4", "N/m^4", 1, "softest",
                       "stiffness of the softest motion by volume; none: not searched"),
-    FLAGS,
+    DEA_TEXT_COLUMN("flags", "flags", "how far the numbers are to be trusted"),
     DEA_RESULT_COLUMN(COUNT, "copies", "copies",
                       .meaning = "times that it was found again as a copy by symmetry"),
     DEA_TEXT_COLUMN("reached", "reached", "how, at first"),
@@ -703,20 +502,6 @@ static const struct dea_result_table_type band_table =
     DEA_RESULT_TABLE(study_name, "bands", band_columns,
                      .title = "what a sensor reads over the states", .where = ALL);
 
-static const struct dea_result_column mesh_columns[] = {
-    KV("voltage_V", "V", "voltage"),
-    DEA_TEXT_COLUMN("state", "state", "branch of the design's mesh that it was transferred from"),
-    DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
-    DEA_RESULT_COLUMN(COUNT, "unknowns", "unknowns", .meaning = "of the mesh"),
-    DEA_TEXT_COLUMN("is", "is", "the state that it is on this mesh; -: none was found from there"),
-    UJ("energy_J", "energy", "potential energy, 0 at rest"),
-    UJ("above_J", "above the lowest", "energy above that of the lowest state on this mesh"),
-    SHAPE,
-    FLAGS,
-};
-static const struct dea_result_table_type mesh_table = DEA_RESULT_TABLE(
-    study_name, "meshes", mesh_columns, .title = "states on finer meshes", .where = ALL);
-
 /* Name of the state that one leads to; "" at the end of the voltages. */
 static void name_lead(const struct search *s, const struct state *state, int direction,
                       char out[NAME_SIZE])
@@ -736,12 +521,14 @@ static dea_status add_state_row(const struct search *s, const struct state *stat
   name_branch(state->variant, name);
   name_lead(s, state, UP, up);
   name_lead(s, state, DOWN, down);
-  return DEA_TABLE_ADD(s->ctx, table, DEA_CELL(p->voltage_V), DEA_TEXT_CELL(name),
-                       DEA_CELL(p->energy_J), DEA_CELL(p->energy_J - lowest_J), SHAPE_OF(p),
-                       DEA_CELL(p->unstable_modes), DEA_CELL(state->stiffness_N_per_m4),
-                       DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(p), flags)),
-                       DEA_CELL((double)state->copies), DEA_TEXT_CELL(state->reached),
-                       DEA_TEXT_CELL(up), DEA_TEXT_CELL(down));
+  return DEA_TABLE_ADD(
+      s->ctx, table, DEA_CELL(p->voltage_V), DEA_TEXT_CELL(name), DEA_CELL(p->energy_J),
+      DEA_CELL(p->energy_J - lowest_J), DEA_CELL(p->centre_z_m), DEA_CELL(p->fibre_tip_z_m),
+      DEA_CELL(p->electrode_edge_u_m), DEA_CELL(p->highest_z_m), DEA_CELL(p->lowest_z_m),
+      DEA_CELL(p->unstable_modes), DEA_CELL(state->stiffness_N_per_m4),
+      DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(p), flags)),
+      DEA_CELL((double)state->copies), DEA_TEXT_CELL(state->reached), DEA_TEXT_CELL(up),
+      DEA_TEXT_CELL(down));
 }
 
 /* Least (side -1) or most (1) of a quantity over the states at a level; NAN where it is none. */
@@ -776,87 +563,13 @@ static dea_status add_band_row(const struct search *s, size_t level, const struc
       DEA_CELL(extreme(s, level, "lowest_z_m", -1)), DEA_CELL(extreme(s, level, "highest_z_m", 1)));
 }
 
-/* The i-th state on a mesh. */
-static dea_status add_mesh_row(const struct search *s, size_t i, const struct search *mesh,
-                               double lowest_J, struct dea_result_table *table)
-{
-  const struct dea_load_point *p = &mesh->states[i].point;
-  const int is = mesh->states[i].is;
-  char name[NAME_SIZE], same[NAME_SIZE] = "-", flags[DEA_FLAGS_SIZE] = "";
-  name_branch(s->states[i].variant, name);
-  if (is != NONE) {
-    name_branch(s->states[is].variant, same);
-    dea_flags_text(dea_load_point_flags(p), flags);
-  }
-  return DEA_TABLE_ADD(s->ctx, table, DEA_CELL(s->states[i].point.voltage_V), DEA_TEXT_CELL(name),
-                       DEA_CELL(mesh->refinement), DEA_CELL((double)mesh->size.unknowns),
-                       DEA_TEXT_CELL(same), DEA_CELL(p->energy_J), DEA_CELL(p->energy_J - lowest_J),
-                       SHAPE_OF(p), DEA_TEXT_CELL(flags));
-}
-
-/* Lowest energy of those at a level that came to a mesh. */
-static double lowest_on(const struct search *mesh, size_t level)
-{
-  double lowest_J = INFINITY;
-  for (size_t i = 0; i < mesh->count; i++) {
-    if (mesh->states[i].level == level && mesh->states[i].is != NONE) {
-      lowest_J = fmin(lowest_J, mesh->states[i].point.energy_J);
-    }
-  }
-  return lowest_J;
-}
-
-/* State by state from mesh to mesh, [count]. */
-static dea_status add_meshes(struct search *s, const struct search *meshes, size_t count)
-{
-  struct dea_result_table *table;
-  DEA_TRY(s->ctx, dea_result_add_table(s->ctx, s->result, &mesh_table, s->type->name, 0, &table));
-  for (size_t level = 0; level < s->level_count; level++) {
-    for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
-      for (size_t m = 0; m <= count; m++) {
-        const struct search *mesh = m > 0 ? &meshes[m - 1] : s;
-        DEA_TRY(s->ctx, add_mesh_row(s, i, mesh, lowest_on(mesh, level), table));
-      }
-    }
-  }
-  return DEA_OK;
-}
-
-/* From mesh to mesh; what is there also where the way to a finer one fails. */
-static dea_status refine(struct search *s)
-{
-  struct search meshes[MESHES_MAX] = {0}, *before = s;
-  size_t count = 0; // that all states have gone to, or been lost on the way to
-  if (s->settings->refinement_count == 0) {
-    return DEA_OK;
-  }
-  if (s->type->transfer == NULL) {
-    return dea_finding_add(s->ctx, DEA_NOTE, (struct dea_location){0},
-                           "model %s cannot transfer states to finer meshes of this device",
-                           s->type->name);
-  }
-  dea_status status = DEA_OK;
-  while (count < s->settings->refinement_count && status == DEA_OK) {
-    struct search *mesh = &meshes[count];
-    status = build_mesh(s, s->settings->refinements[count].si, mesh);
-    status = status == DEA_OK ? transfer_all(before, mesh) : status;
-    forget_films(before);
-    before = mesh;
-    count += status == DEA_OK;
-  }
-  dea_status put = status != DEA_E_MEMORY ? add_meshes(s, meshes, count) : DEA_OK;
-  for (size_t m = 0; m < MESHES_MAX && meshes[m].ctx != NULL; m++) {
-    free_search(&meshes[m]);
-  }
-  return status == DEA_OK ? put : status;
-}
-
 /* Branches are lettered as they come, level by level, and then all rows can be written. */
 static dea_status add_result(struct search *s)
 {
   struct dea_context *ctx = s->ctx;
   struct dea_result_table *table;
   size_t branches = 0;
+  s->first_variant = s->result->variant_count;
   for (size_t level = 0; level < s->level_count; level++) {
     bool several = states_at(s, level) > 1;
     for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
@@ -878,83 +591,6 @@ static dea_status add_result(struct search *s)
   return DEA_OK;
 }
 
-// Relaxed film -----------------------------------------------------------------------------------
-
-static const struct dea_result_column relaxed_columns[] = {
-    KV("voltage_V", "V", "voltage"),
-    DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
-    SHAPE,
-    FLAGS,
-};
-static const struct dea_result_table_type relaxed_table =
-    DEA_RESULT_TABLE(study_name, "relaxed", relaxed_columns,
-                     .title = "mean of a film that wrinkles freely", .where = ALL);
-
-/* Rows of one mesh, as far as its model goes. */
-static dea_status add_relaxed_mesh(struct search *s, const struct dea_model_settings *settings,
-                                   struct dea_result_table *table)
-{
-  struct dea_model *model = NULL;
-  dea_status status = s->type->create(s->ctx, s->result->device, settings, &model);
-  for (size_t level = 0; level < s->level_count && status == DEA_OK; level++) {
-    struct dea_load_point p;
-    char flags[DEA_FLAGS_SIZE];
-    status = s->type->solve(s->ctx, model, s->voltages_V[level], &p);
-    if (status == DEA_OK) {
-      status = DEA_TABLE_ADD(s->ctx, table, DEA_CELL(p.voltage_V),
-                             DEA_CELL(refinement_of(s->settings, settings)), SHAPE_OF(&p),
-                             DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(&p), flags)));
-    }
-  }
-  if (model != NULL) {
-    s->type->destroy(s->ctx, model);
-  }
-  return status;
-}
-
-/* Whether the film can wrinkle freely, and has tension to lose. A disc's electrodes of a thickness
- * are bonded to it; without pre-stretch it is slack at any voltage. */
-static bool has_relaxed(const struct search *s, const struct dea_model_settings *settings)
-{
-  const struct dea_device *device = s->result->device;
-  return s->settings->relaxed.value != 0 && settings->film == DEA_FILM_SOLID &&
-         settings->field == DEA_FIELD_THIN &&
-         (!device->disc || (device->pre_stretch > 1 && device->electrode_thickness_m == 0));
-}
-
-/* The tension field at the voltages of the search, on the design's mesh and the finer ones. Where
- * it ends there are no more rows, and a note says why. */
-static dea_status append_relaxed(struct search *s)
-{
-  struct dea_model_settings settings = dea_model_settings_of(s->result->design);
-  struct dea_result_table *table;
-  if (!has_relaxed(s, &settings)) {
-    return DEA_OK;
-  }
-  settings.film = DEA_FILM_MEMBRANE;
-  settings.domain = s->result->device->disc ? settings.domain : DEA_DOMAIN_DISC; // of the states
-  DEA_TRY(s->ctx,
-          dea_result_add_table(s->ctx, s->result, &relaxed_table, s->type->name, 0, &table));
-  for (size_t m = 0; m <= s->settings->refinement_count; m++) {
-    if (m > 0) {
-      refine_model(s->settings, s->settings->refinements[m - 1].si, &settings);
-    }
-    dea_status status = add_relaxed_mesh(s, &settings, table);
-    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
-      return status;
-    }
-    if (status != DEA_OK) {
-      char why[256];
-      snprintf(why, sizeof why, "%s", dea_context_message(s->ctx));
-      dea_context_clear(s->ctx);
-      DEA_TRY(s->ctx, dea_finding_add(s->ctx, DEA_NOTE, (struct dea_location){0},
-                                      "model %s: no more of the film that wrinkles freely: %s",
-                                      s->type->name, why));
-    }
-  }
-  return DEA_OK;
-}
-
 // Run ---------------------------------------------------------------------------------------------
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
@@ -963,27 +599,17 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   (void)model; // none
   const struct dea_design *design = result->design;
   const struct settings *settings = dea_design_settings(design, &section)->values;
-  const struct dea_model_settings own = dea_model_settings_of(design);
-  struct search s = {.ctx = ctx,
-                     .type = type,
-                     .settings = settings,
-                     .result = result,
-                     .refinement = refinement_of(settings, &own)};
+  struct search s = {.ctx = ctx, .type = type, .settings = settings, .result = result};
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, false, s.voltages_V);
   qsort(s.voltages_V, count, sizeof *s.voltages_V, dea_rising);
   dea_status status = dea_model_create_whole(ctx, type, design, result->device, &s.model);
-  if (status == DEA_OK) {
-    measure(&s);
-  }
   dea_status swept = status == DEA_OK ? sweep_up(&s, count) : status;
   status = forgive(ctx, swept); // states at the voltages that there are
   status = status == DEA_OK && s.level_count > 0 ? search_all(&s) : status;
   if (s.level_count > 0 && status != DEA_E_MEMORY) {
     dea_status put = add_result(&s);
     status = status == DEA_OK ? put : status;
-    status = status == DEA_OK ? append_relaxed(&s) : status;
-    status = status == DEA_OK ? refine(&s) : status;
   }
   free_search(&s);
   return status == DEA_OK && swept != DEA_OK
@@ -1055,73 +681,33 @@ static dea_status add_branches(struct dea_context *ctx, struct dea_panel *panel,
   return DEA_OK;
 }
 
-/* The height of the film that wrinkles freely, on the first mesh, dashed. */
-static dea_status add_relaxed(struct dea_context *ctx, struct dea_panel *panel,
-                              const struct dea_result *result)
-{
-  for (size_t t = 0; t < result->table_count; t++) {
-    const struct dea_result_table *table = &result->tables[t];
-    struct dea_series *series,
-        look = {.title = "mean (?)", .style = DEA_DASHED, .colour = DEA_GREY};
-    size_t count = 0;
-    if (strcmp(table->type.study, study_name) != 0 ||
-        strcmp(table->type.name, relaxed_table.name) != 0) {
-      continue;
-    }
-    while (count < table->row_count && dea_result_table_number(table, count, "refinement", 0) ==
-                                           dea_result_table_number(table, 0, "refinement", 0)) {
-      count++;
-    }
-    DEA_TRY(ctx, dea_panel_add_as(ctx, panel, count, &look, &series));
-    for (size_t k = 0; k < count; k++) {
-      series->values[k] = 1e-3 * dea_result_table_number(table, k, "voltage_V", 0);
-      series->values[count + k] = 1e6 * height(dea_result_table_number(table, k, "centre_z_m", 0),
-                                               dea_result_table_number(table, k, "highest_z_m", 0),
-                                               dea_result_table_number(table, k, "lowest_z_m", 0));
-    }
-  }
-  return DEA_OK;
-}
-
-/* Lowest voltage of all states; INFINITY without any. */
-static double first_V(const struct dea_result *result)
-{
-  double first = INFINITY;
-  for (size_t i = 0; i < result->variant_count; i++) {
-    const struct dea_curve *curve = &result->variants[i].curve;
-    if (strcmp(curve->kind, study_name) == 0 && curve->count > 0) {
-      first = fmin(first, curve->points[0].voltage_V);
-    }
-  }
-  return first;
-}
-
-static bool has_centre(const struct dea_result *result)
+/* The first state, at the lowest voltage; NULL: there is none. */
+static const struct dea_load_point *first_state(const struct dea_result *result)
 {
   for (size_t i = 0; i < result->variant_count; i++) {
     const struct dea_curve *curve = &result->variants[i].curve;
     if (strcmp(curve->kind, study_name) == 0 && curve->count > 0) {
-      return !isnan(curve->points[0].centre_z_m);
+      return &curve->points[0];
     }
   }
-  return false;
+  return NULL;
 }
 
 static dea_status build_states(struct dea_context *ctx, const struct dea_result *result,
                                struct dea_plot *plot)
 {
   struct dea_panel *panels = plot->panels;
+  const struct dea_load_point *first = first_state(result);
   plot->panel_count = 2;
   DEA_TRY(ctx, add_branches(ctx, &panels[0], result, false));
-  DEA_TRY(ctx, add_relaxed(ctx, &panels[0], result));
   DEA_TRY(ctx, add_branches(ctx, &panels[1], result, true));
   snprintf(panels[0].y_label, DEA_LABEL_SIZE, "%s {/:Italic z} (\302\265m)",
-           has_centre(result) ? "Centre" : "Farthest place");
+           first != NULL && !isnan(first->centre_z_m) ? "Centre" : "Farthest place");
   snprintf(panels[1].y_label, DEA_LABEL_SIZE, "Energy above the lowest (\302\265J)");
   for (size_t p = 0; p < plot->panel_count; p++) {
     dea_panel_voltage_axis(&panels[p]);
-    if (1e-3 * first_V(result) < panels[p].x_max) {
-      panels[p].x_min = 1e-3 * first_V(result);
+    if (first != NULL && 1e-3 * first->voltage_V < panels[p].x_max) {
+      panels[p].x_min = 1e-3 * first->voltage_V;
     }
     dea_panel_even_tics(&panels[p], 7);
   }
@@ -1162,8 +748,8 @@ static const struct dea_figure figures[] = {
     DEA_STUDY_FIGURE(
         "states", study_name, build_states,
         "centre, or the place farthest out of the plane, and energy of the stable states "
-        "that were found; dashed: mean of a film that wrinkles freely; one line where each "
-        "leads to the other (?: not to be trusted at its highest voltage)"),
+        "that were found; one line where each leads to the other (?: not to be trusted at its "
+        "highest voltage)"),
     DEA_STUDY_FIGURE(
         "state_profiles", study_name, build_profiles,
         "shape of each state at its highest voltage (of model 3d: to the right along a "

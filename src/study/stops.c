@@ -10,22 +10,6 @@ double dea_study_highest_V(const struct dea_result *result)
   return reached_V > 0 ? reached_V : dea_design_highest_V(result->design);
 }
 
-dea_status dea_study_rising(struct dea_context *ctx, double from,
-                            const struct dea_quantity *refinements, size_t count)
-{
-  for (size_t i = 0; i < count; i++) {
-    double before = i > 0 ? refinements[i - 1].si : from;
-    if (refinements[i].si <= before) {
-      DEA_TRY(ctx,
-              dea_finding_add(ctx, DEA_ERROR, refinements[i].location,
-                              "refinement: %g after %g, but each mesh has to be finer than the "
-                              "one before",
-                              refinements[i].si, before));
-    }
-  }
-  return DEA_OK;
-}
-
 size_t dea_study_stops(const struct dea_design *design, const struct dea_quantity *given,
                        size_t given_count, bool with_rest, double out[DEA_DESIGN_STOPS_MAX])
 {

@@ -14,7 +14,6 @@ struct dea_rerun;           // study/rerun.h
 struct dea_study_services {
   const struct dea_checkpoint_sink *checkpoint; // who keeps a sweep as it goes; NULL: nobody
   const struct dea_rerun *rerun;                // NULL for none: no bands
-  size_t processes; // that a study may take at the same time; 0 or 1: this one
 };
 
 struct dea_study {
@@ -92,23 +91,10 @@ dea_status dea_study_add_points(struct dea_context *ctx, const struct dea_model_
     .count_offset = offsetof(struct settings, voltage_count), .absent_text = (absent),             \
     .doc = (what), .example = (shown)                                                              \
   }
-/* Row of the meshes of a study; its struct settings has refinements [MESHES_MAX] and
- * refinement_count. ...: what it takes without any, and how many at least. */
-#define DEA_STUDY_REFINEMENT_FIELD(what, shown, ...)                                               \
-  {                                                                                                \
-    .key = "refinement", .kind = DEA_FIELD_NUMBER,                                                 \
-    .offset = offsetof(struct settings, refinements), .unit = "1", .min = 1, .max = 6,             \
-    .list_max = MESHES_MAX, .element_size = sizeof(struct dea_quantity),                           \
-    .count_offset = offsetof(struct settings, refinement_count), .doc = (what),                    \
-    .example = (shown), __VA_ARGS__                                                                \
-  }
 /* Voltages that a study stops at: those of the design, or without any the quarters of the highest
  * of the sweep, with 0 V if that is wanted. Returns their number. */
 size_t dea_study_stops(const struct dea_design *design, const struct dea_quantity *given,
                        size_t given_count, bool with_rest, double out[DEA_DESIGN_STOPS_MAX]);
-/* A finding where refinements [count] of meshes do not rise, the first one above `from`. */
-dea_status dea_study_rising(struct dea_context *ctx, double from,
-                            const struct dea_quantity *refinements, size_t count);
 /* A model of its own goes through voltages [count] in their order; `take` adds what there is at
  * each stop to the curve of that kind. whole: of all of a device of the general form, not a sector.
  */

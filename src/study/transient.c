@@ -1,7 +1,6 @@
 /* Study "transient": a waveform is played to the model (docs/theory/time.md). Steps as long as the
  * tolerance allows, none across a corner of the waveform; a jump is a step of no length. */
 #include "base/schema.h"
-#include "result/time_series.h"
 #include "study/force.h"
 #include "study/observe.h"
 #include "study/stepper.h"
@@ -619,68 +618,172 @@ static const struct dea_result_table_type cycle_table =
 static const struct dea_result_table_type creep_table = DEA_RESULT_TABLE(
     study_name, "creep", creep_columns, .title = "farthest value of each cycle", .where = ALL);
 
-static dea_status add_facts(struct dea_context *ctx, const struct dea_curve *curve, int column,
-                            const char *model, struct dea_result *result)
+static double largest_of(const struct dea_curve *curve, int column)
 {
-  struct dea_energy_balance e;
-  struct dea_result_table *table;
-  bool balanced = dea_time_series_balance(curve, &e);
-  DEA_TRY(ctx, dea_result_add_table(ctx, result, &fact_table, model, 0, &table));
-  DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL((double)curve->count),
-                             DEA_CELL(curve->points[curve->count - 1].time_s),
-                             DEA_TEXT_CELL(column < 0 ? "" : dea_point_columns[column].key)));
-  if (balanced) {
-    DEA_TRY(ctx, dea_result_add_table(ctx, result, &energy_table, model, 0, &table));
-    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(e.supply_work_J), DEA_CELL(e.stored_J),
-                               DEA_CELL(e.kinetic_J), DEA_CELL(e.dissipated_J), DEA_CELL(e.error)));
+  double largest = 0;
+  for (size_t i = 0; i < curve->count; i++) {
+    double value = fabs(dea_point_get(&curve->points[i], column));
+    largest = isfinite(value) ? fmax(largest, value) : largest;
   }
-  return DEA_OK;
+  return largest;
 }
 
-static dea_status add_cycles(struct dea_context *ctx, const struct dea_cycle *cycles, size_t count,
-                             int column, const char *model, struct dea_result *result)
+/* Column that shows how the actuator moves: the centre's displacement where it moves, else the
+ * electrode's edge; -1 without any. */
+static int motion_column(const struct dea_curve *curve)
+{
+  static const double noise = 1e-6; // a flat film's centre stays but for the solver's
+  int centre = dea_point_column_find("centre_z_m"),
+      edge = dea_point_column_find("electrode_edge_u_m");
+  double z_m = largest_of(curve, centre), u_m = largest_of(curve, edge);
+  return z_m > noise * u_m ? centre : u_m > 0 ? edge : -1;
+}
+
+/* Work of the supply against what it became, from the first point to the last; the error is that at
+ * the worst point, over the largest of these energies at any. Nothing when the curve has none. */
+static dea_status add_balance(struct dea_context *ctx, const struct dea_curve *curve,
+                              const char *model, struct dea_result *result)
 {
   struct dea_result_table *table;
-  DEA_TRY(ctx, dea_result_add_table(ctx, result, &cycle_table, model, 0, &table));
-  table->quantity = column;
-  for (size_t i = 0; i < count; i++) {
-    const struct dea_cycle *c = &cycles[i];
-    DEA_TRY(ctx,
-            DEA_TABLE_ADD(ctx, table, DEA_CELL(c->start_s), DEA_CELL(c->end_s),
-                          DEA_CELL(c->level_V), DEA_CELL(c->amplitude), DEA_CELL(c->farthest),
-                          DEA_CELL(c->highest), DEA_CELL(c->lowest), DEA_CELL(c->rise_time_s)));
+  double supply = 0, stored = 0, kinetic = 0, lost = 0, largest = 0, worst = 0;
+  for (size_t i = 0; i < curve->count; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    if (isnan(p->supply_work_J) || isnan(p->stored_energy_J) || isnan(p->dissipated_J)) {
+      return DEA_OK;
+    }
+    supply = p->supply_work_J;
+    stored = p->stored_energy_J - curve->points[0].stored_energy_J;
+    kinetic = isnan(p->kinetic_energy_J) ? 0 : p->kinetic_energy_J;
+    lost = p->dissipated_J + (isnan(p->damped_J) ? 0 : p->damped_J);
+    largest = fmax(largest, fmax(fmax(fabs(supply), fabs(stored)), fmax(kinetic, lost)));
+    worst = fmax(worst, fabs(supply - stored - kinetic - lost));
   }
-  DEA_TRY(ctx, dea_result_add_table(ctx, result, &creep_table, model, 0, &table));
-  table->quantity = column;
-  for (size_t first = 0, last; first < count; first = last + 1) {
-    last = dea_time_series_level_end(cycles, count, first);
-    const struct dea_cycle *a = &cycles[first], *b = &cycles[last];
-    DEA_TRY(ctx,
-            DEA_TABLE_ADD(ctx, table, DEA_CELL(a->level_V), DEA_CELL((double)(last - first + 1)),
-                          DEA_CELL(a->farthest), DEA_CELL(b->farthest),
-                          DEA_CELL(b->farthest - a->farthest), DEA_CELL(a->rise_time_s)));
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &energy_table, model, 0, &table));
+  return DEA_TABLE_ADD(ctx, table, DEA_CELL(supply), DEA_CELL(stored), DEA_CELL(kinetic),
+                       DEA_CELL(lost), DEA_CELL(largest > 0 ? worst / largest : 0));
+}
+
+/* One cycle of the waveform, as a column of the curve shows it [SI]. */
+struct cycle {
+  double start_s, end_s;
+  double level_V; // of the waveform
+  double highest, lowest;
+  double farthest;    // of the two, the one farther from the value at the start
+  double rise_time_s; // from 10 to 90 % of the way to the farthest; NAN without a way
+};
+
+/* First time at which the column is at `level` on its way between points from and to; NAN: never.
+ */
+static double time_at(const struct dea_curve *curve, int column, size_t from, size_t to,
+                      double level, double side)
+{
+  for (size_t i = from + 1; i < to; i++) {
+    double a = dea_point_get(&curve->points[i - 1], column) - level;
+    double b = dea_point_get(&curve->points[i], column) - level;
+    if (a * side < 0 && b * side >= 0) {
+      double t = curve->points[i - 1].time_s;
+      return t + (curve->points[i].time_s - t) * a / (a - b);
+    }
   }
-  return DEA_OK;
+  return NAN;
+}
+
+/* Before a time, and not by rounding only. */
+static bool is_before(double time_s, double end_s)
+{
+  return time_s < end_s * (1 - 1e-12);
+}
+
+/* Features of the points [from, to), of which there is one at least. */
+static struct cycle measure(const struct dea_curve *curve, int column,
+                            const struct dea_wave_cycle *wave, size_t from, size_t to)
+{
+  double start = dea_point_get(&curve->points[from], column);
+  struct cycle out = {.start_s = wave->start_s,
+                      .end_s = wave->end_s,
+                      .level_V = wave->level_V,
+                      .highest = start,
+                      .lowest = start,
+                      .rise_time_s = NAN};
+  for (size_t i = from; i < to; i++) {
+    double value = dea_point_get(&curve->points[i], column);
+    out.highest = fmax(out.highest, value);
+    out.lowest = fmin(out.lowest, value);
+  }
+  out.farthest = out.highest - start >= start - out.lowest ? out.highest : out.lowest;
+  double change = out.farthest - start, side = copysign(1, change);
+  if (change != 0) {
+    out.rise_time_s = time_at(curve, column, from, to, start + 0.9 * change, side) -
+                      time_at(curve, column, from, to, start + 0.1 * change, side);
+  }
+  return out;
+}
+
+/* Row of the cycles from a to b, which are of one voltage. */
+static dea_status add_creep(struct dea_context *ctx, const struct cycle *a, const struct cycle *b,
+                            size_t count, struct dea_result_table *table)
+{
+  return DEA_TABLE_ADD(ctx, table, DEA_CELL(a->level_V), DEA_CELL((double)count),
+                       DEA_CELL(a->farthest), DEA_CELL(b->farthest),
+                       DEA_CELL(b->farthest - a->farthest), DEA_CELL(a->rise_time_s));
+}
+
+/* Cycles of the waveform that the curve holds to their end. */
+static dea_status add_cycles(struct dea_context *ctx, const struct dea_curve *curve,
+                             const struct dea_waveform *waveform, int column, const char *model,
+                             struct dea_result *result)
+{
+  const double end_s = curve->points[curve->count - 1].time_s * (1 + 1e-12);
+  struct dea_result_table *cycles, *creep;
+  struct dea_wave_cycle wave;
+  struct cycle first = {0}, last = {0};
+  size_t from = 0, alike = 0; // cycles from the first one on
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &cycle_table, model, 0, &cycles));
+  cycles->quantity = column;
+  const size_t at = (size_t)(cycles - result->tables);
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &creep_table, model, 0, &creep));
+  creep->quantity = column;
+  cycles = &result->tables[at];
+  for (size_t n = 0; dea_waveform_cycle(waveform, n, &wave) && wave.end_s <= end_s; n++) {
+    while (from + 1 < curve->count && is_before(curve->points[from].time_s, wave.start_s)) {
+      from++;
+    }
+    size_t to = from + 1; // without the jump at the end, which belongs to the next cycle
+    while (to < curve->count && is_before(curve->points[to].time_s, wave.end_s)) {
+      to++;
+    }
+    const struct cycle c = measure(curve, column, &wave, from, to);
+    from = to - 1;
+    if (alike > 0 && c.level_V != first.level_V) {
+      DEA_TRY(ctx, add_creep(ctx, &first, &last, alike, creep));
+      alike = 0;
+    }
+    first = alike++ == 0 ? c : first;
+    last = c;
+    DEA_TRY(ctx,
+            DEA_TABLE_ADD(ctx, cycles, DEA_CELL(c.start_s), DEA_CELL(c.end_s), DEA_CELL(c.level_V),
+                          DEA_CELL(c.highest - c.lowest), DEA_CELL(c.farthest), DEA_CELL(c.highest),
+                          DEA_CELL(c.lowest), DEA_CELL(c.rise_time_s)));
+  }
+  return alike > 0 ? add_creep(ctx, &first, &last, alike, creep) : DEA_OK;
 }
 
 static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
 {
   const struct dea_curve *curve = dea_result_find(result, model, study_name);
-  struct dea_cycle *cycles;
-  size_t count;
+  const struct dea_waveform *waveform = result->design->drive.waveform;
+  struct dea_result_table *table;
   if (curve == NULL || curve->count == 0) {
     return DEA_OK;
   }
-  int column = dea_time_series_column(curve);
-  DEA_TRY(ctx, add_facts(ctx, curve, column, model, result));
-  if (column < 0 || result->design->drive.waveform == NULL) {
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, dea_time_series_cycles(ctx, curve, result->design->drive.waveform, column, &cycles,
-                                      &count));
-  dea_status status = add_cycles(ctx, cycles, count, column, model, result);
-  dea_free(ctx, cycles);
-  return status;
+  int column = motion_column(curve);
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &fact_table, model, 0, &table));
+  DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL((double)curve->count),
+                             DEA_CELL(curve->points[curve->count - 1].time_s),
+                             DEA_TEXT_CELL(column < 0 ? "" : dea_point_columns[column].key)));
+  DEA_TRY(ctx, add_balance(ctx, curve, model, result));
+  return column < 0 || waveform == NULL ? DEA_OK
+                                        : add_cycles(ctx, curve, waveform, column, model, result);
 }
 
 // Figures ----------------------------------------------------------------------------------------
@@ -752,19 +855,6 @@ static dea_status add_voltages(struct dea_context *ctx, const struct dea_curve *
   return add_in_time(ctx, panel, curve, "voltage_V", 1e-3, &look);
 }
 
-/* Column that shows the motion, and its factor: micrometres below half a millimetre. */
-static int motion_of(const struct dea_curve *curve, double *factor)
-{
-  int column = dea_time_series_column(curve);
-  double largest = 0;
-  for (size_t i = 0; i < curve->count && column >= 0; i++) {
-    double value = fabs(dea_point_get(&curve->points[i], column));
-    largest = fmax(largest, isfinite(value) ? value : 0);
-  }
-  *factor = largest > 0.5e-3 ? 1e3 : 1e6;
-  return column;
-}
-
 /* First curve in time of the result, or NULL. */
 static const struct dea_curve *first_curve(const struct dea_result *result)
 {
@@ -792,11 +882,11 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
                         struct dea_plot *plot)
 {
   const struct dea_curve *curve = first_curve(result);
-  double factor;
   if (!supplied(curve)) {
     return DEA_OK;
   }
-  int column = motion_of(curve, &factor);
+  const int column = motion_column(curve);
+  const bool small = column < 0 || !(largest_of(curve, column) > 0.5e-3);
   struct dea_panel *upper = &plot->panels[0], *lower = &plot->panels[1];
   plot->panel_count = column >= 0 ? 2 : 1;
   plot->second_height = 1.0;
@@ -807,11 +897,11 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     return DEA_OK;
   }
   const struct dea_column *c = &dea_point_columns[column];
-  DEA_TRY(ctx, add_models(ctx, result, lower, c->key, factor));
+  DEA_TRY(ctx, add_models(ctx, result, lower, c->key, small ? 1e6 : 1e3));
   snprintf(lower->y_label, sizeof lower->y_label, "%s (%s)",
            strcmp(c->key, "centre_z_m") == 0 ? "Displacement of the centre {/:Italic z}"
                                              : "Displacement of the edge {/:Italic u}",
-           factor < 1e5 ? "mm" : "\302\265m");
+           small ? "\302\265m" : "mm");
   dea_observe_time_axis(lower);
   return DEA_OK;
 }

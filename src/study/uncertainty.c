@@ -316,8 +316,6 @@ static bool is_answer(const struct dea_context *ctx, int column)
                                      "time_s",
                                      "source_voltage_V",
                                      "tip_depth_m",
-                                     "force_interpolation_error_N",
-                                     "interpolation_error",
                                      "nominal_field_V_per_m",
                                      "breakdown_probability",
                                      "centre_z_error_m",
@@ -403,12 +401,9 @@ static dea_status fill_curve(struct work *w, struct dea_curve *curve)
 static dea_status fill_bands(struct work *w)
 {
   for (size_t k = 0; k < KINDS; k++) {
-    for (size_t i = 0; i < w->result->curve_count; i++) {
-      struct dea_curve *curve = &w->result->curves[i];
-      if (strcmp(curve->model, w->type->name) == 0 && strcmp(curve->kind, kinds[k]) == 0 &&
-          curve->count > 0) {
-        DEA_TRY(w->ctx, fill_curve(w, curve));
-      }
+    const struct dea_curve *curve = dea_result_find(w->result, w->type->name, kinds[k]);
+    if (curve != NULL && curve->count > 0) {
+      DEA_TRY(w->ctx, fill_curve(w, &w->result->curves[curve - w->result->curves]));
     }
   }
   return DEA_OK;
@@ -586,12 +581,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   dea_text_free(&w->text);
   dea_free(ctx, w);
   return status;
-}
-
-bool dea_uncertainty_written(const struct dea_design *design)
-{
-  const struct dea_settings *given = dea_design_settings(design, &section);
-  return given != NULL && given->written;
 }
 
 /* Also without the section: a film's law may have uncertainties. */

@@ -3,10 +3,6 @@
 
 #include "study/rerun.h"
 
-#include <stdbool.h>
-
-/* Whether its section is written, so that curves of all models get bands. */
-bool dea_uncertainty_written(const struct dea_design *design);
 /* Whether what it names are numbers of the design, with uncertainties of theirs; DEA_E_DESIGN after
  * findings. */
 dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_design *design,

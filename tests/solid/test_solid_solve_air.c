@@ -1,7 +1,7 @@
 /* Gas that moves with discs in a rigid wall, against closed forms. */
 // ctest: solid
 #include "model/solid/model3d/air_mass.h"
-#include "result/copies.h"
+#include "result/field_mesh.h"
 
 #include "fake_surface.h"
 #include "layout_device.h" // after: its context shadows no name of the headers above

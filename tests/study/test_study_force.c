@@ -189,19 +189,16 @@ TEST(test_deeper)
   tear_down_result();
 }
 
-// Voltages between computed ones --------------------------------------------------------------
+// Lines -----------------------------------------------------------------------------------------
 
-/* A film whose force is F = F_0 - b V^2 - c V^4 while it is taut, which jumps at 6.35 kV to a state
+/* A film whose force is F = F_0 - b V^2 - c V^4, which jumps at 6.35 kV to a state
  * that goes back with the voltage only below 5.2 kV. */
 struct dea_film {
-  double end_V;     // no equilibrium beyond
-  double hidden_V;  // none here either, unless it is the next of steps of 0.1 kV
-  bool sticks;      // it is not the same where the voltage has fallen
-  int solves;       // in this process
-  size_t processes; // that the study may take
+  double end_V; // no equilibrium beyond
+  int solves;
 };
 static struct dea_film film;
-static const double jump_V = 6350, tension_V = 4450;
+static const double jump_V = 6350;
 static bool jumped;
 
 static double taut_force(double voltage_V)
@@ -214,17 +211,13 @@ static dea_status film_solve(struct dea_context *context, struct dea_model *mode
                              struct dea_load_point *out)
 {
   film.solves++;
-  bool jumps = voltage_V - model->voltage_V > 101;
-  if (voltage_V > film.end_V || (voltage_V == film.hidden_V && jumps)) {
+  if (voltage_V > film.end_V) {
     return dea_fail(context, DEA_E_NO_EQUILIBRIUM, "none at %g V", voltage_V);
   }
-  bool fell = voltage_V < model->voltage_V;
   model->voltage_V = voltage_V;
   jumped = voltage_V > jump_V || (jumped && voltage_V > 5200);
   report(model, out);
-  out->min_tension_N_per_m = tension_V - voltage_V;
-  out->compression_ratio = 0; // too small a part to wrinkle
-  out->force_N = taut_force(voltage_V) - (jumped ? 0.02 : 0) + (fell && film.sticks ? 0.005 : 0);
+  out->force_N = taut_force(voltage_V) - (jumped ? 0.02 : 0);
   out->own_flags = jumped ? 1u << DEA_FLAG_STATES : 0;
   return DEA_OK;
 }
@@ -233,17 +226,14 @@ static dea_status film_load(struct dea_context *context, struct dea_model *model
                             const struct dea_state *state)
 {
   model->voltage_V = *dea_state_find(state, "voltage", 1);
-  jumped = false; // states are kept of taut films only
+  jumped = false; // states are kept of 0 V only
   return DEA_OK;
 }
 
-/* Study force of that film with these settings, the last of them NULL where there are no bands.
- * Returns how it ended. */
-static dea_status run_film(const char *const settings[3])
+/* Study force of that film. Returns how it ended. */
+static dea_status run_film(const char *voltages, const char *force)
 {
-  const struct dea_override sets[] = {{"compute.voltage", settings[0]},
-                                      {"compute.force", settings[1]},
-                                      {"compute.uncertainty", settings[2]}};
+  const struct dea_override sets[] = {{"compute.voltage", voltages}, {"compute.force", force}};
   static const char *const name = "force";
   struct dea_model_type type = spring;
   type.save = save;
@@ -251,94 +241,34 @@ static dea_status run_film(const char *const settings[3])
   type.solve = film_solve;
   film.solves = 0;
   jumped = false;
-  set_up_result(GOOD_DESIGN, sets, settings[2] != NULL ? 3 : 2);
-  const struct dea_study_services services = {.processes = film.processes};
-  return dea_study_run_with(ctx, &type, &name, 1, &services, result);
+  set_up_result(GOOD_DESIGN, sets, 2);
+  return dea_study_run(ctx, &type, &name, 1, result);
 }
 
 #define TO_8_KV "{from: 0 kV, to: 8 kV, step: 0.1 kV}"
-#define ONE_MM "tip: flat, radius: 2 mm, side: back, depth: [1 mm]"
-static const char *const usual[3] = {TO_8_KV, "{" ONE_MM "}", NULL};
+#define ONE_MM "{tip: flat, radius: 2 mm, side: back, depth: [1 mm]}"
 
-/* Up to the voltage where tension is lost few points are computed, beyond it all, as they come in a
- * sweep of all. */
-TEST(test_interpolated)
+/* All voltages as they come, up and back, and the table of the line. */
+TEST(test_line)
 {
-  static const char *const settings[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0002}", NULL};
-  film = (struct dea_film){.end_V = INFINITY, .sticks = true};
-  assert_int_equal(run_film(settings), DEA_OK);
-  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
-  assert_int_equal(curve->count, 81);
-  int computed = 0;
-  for (size_t i = 0; i < 81; i++) {
-    const struct dea_load_point *p = &curve->points[i];
-    double V = 100.0 * (double)i;
-    assert_close(p->voltage_V, V, 1e-12, 0);
-    double wanted = taut_force(V) - (V > jump_V ? 0.02 : 0);
-    if (!dea_load_point_interpolated(p)) {
-      assert_close(p->force_N, wanted, 1e-14, 0);
-      computed++;
-    } else {
-      assert_true(V < tension_V);
-      assert_true(fabs(p->force_N - wanted) <= p->force_interpolation_error_N);
-      assert_true(p->force_interpolation_error_N <= 0.0002 * 0.04);
-    }
-    assert_true(((p->own_flags >> DEA_FLAG_STATES & 1) != 0) == (V > jump_V));
-  }
-  assert_true(computed < 60);
-  assert_int_equal(film.solves, computed); // 4.5 kV ends it, 4.6 and 4.8 kV would by the tension
-  const struct dea_result_table *table = dea_result_find_table(result, "spring", "force", "lines");
-  assert_non_null(table);
-  assert_close(dea_result_table_number(table, 0, "voltages", 0), 81, 0, 0);
-  assert_close(dea_result_table_number(table, 0, "computed", 0), computed, 0, 0);
-  assert_true(dea_result_table_number(table, 0, "force_interpolation_error_N", 0) > 0);
-  assert_close(dea_result_table_number(table, 0, "trusted_voltage_V", 0), 6300, 1e-9,
-               0); // it jumps
-  assert_close(dea_result_table_number(table, 0, "first_force_N", 0), taut_force(0), 1e-14, 0);
-  assert_close(dea_result_table_number(table, 0, "last_force_N", 0), taut_force(8000) - 0.02, 1e-14,
-               0);
-  tear_down_result();
-}
-
-/* With a tolerance of 0, with bands, of few voltages, of falling ones: every one is computed. */
-TEST(test_all_computed)
-{
-  static const char *const cases[][3] = {
-      {TO_8_KV, "{" ONE_MM ", tolerance: 0}", NULL},
-      {TO_8_KV, "{" ONE_MM "}", "{parameters: [{name: film.thickness, std: 1 um}]}"},
-      {"{from: 0 kV, to: 6 kV, step: 0.4 kV}", "{" ONE_MM "}", NULL},
-      {"{values: [6 kV, 5.9 kV, 5.8 kV, 5.7 kV, 5.6 kV, 5.5 kV, 5.4 kV, 5.3 kV, 5.2 kV, 5.1 kV, 5 "
-       "kV, 4.9 "
-       "kV, 4.8 kV, 4.7 kV, 4.6 kV, 4.5 kV, 4.4 kV, 4.3 kV]}",
-       "{" ONE_MM "}", NULL},
-  };
   film = (struct dea_film){.end_V = INFINITY};
-  for (size_t n = 0; n < sizeof cases / sizeof cases[0]; n++) {
-    assert_int_equal(run_film(cases[n]), DEA_OK);
-    const struct dea_curve *curve = dea_result_find(result, "spring", "force");
-    assert_int_equal(curve->count, film.solves);
-    for (size_t i = 0; i < curve->count; i++) {
-      assert_false(dea_load_point_interpolated(&curve->points[i]));
-    }
-    tear_down_result();
-  }
-}
-
-/* The way back is computed voltage by voltage from where the way up has ended. */
-TEST(test_back)
-{
-  static const char *const settings[3] = {"{from: 0 kV, to: 8 kV, step: 0.1 kV, back: yes}",
-                                          "{" ONE_MM "}", NULL};
-  film = (struct dea_film){.end_V = INFINITY};
-  assert_int_equal(run_film(settings), DEA_OK);
+  assert_int_equal(run_film("{from: 0 kV, to: 8 kV, step: 0.1 kV, back: yes}", ONE_MM), DEA_OK);
   const struct dea_curve *curve = dea_result_find(result, "spring", "force");
   assert_int_equal(curve->count, 161);
-  for (size_t i = 81; i < 161; i++) {
-    double V = 100.0 * (double)(160 - i);
-    assert_false(dea_load_point_interpolated(&curve->points[i]));
-    assert_close(curve->points[i].force_N, taut_force(V) - (V > 5200 ? 0.02 : 0), 1e-14, 0);
+  assert_int_equal(film.solves, 161);
+  for (size_t i = 0; i < 161; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    double V = 100.0 * (double)(i < 81 ? i : 160 - i);
+    bool jumps = V > (i < 81 ? jump_V : 5200);
+    assert_close(p->voltage_V, V, 1e-12, 0);
+    assert_close(p->force_N, taut_force(V) - (jumps ? 0.02 : 0), 1e-14, 0);
+    assert_true(((p->own_flags >> DEA_FLAG_STATES & 1) != 0) == jumps);
   }
-  assert_true(dea_load_point_interpolated(&curve->points[3]));
+  const struct dea_result_table *table = dea_result_find_table(result, "spring", "force", "lines");
+  assert_non_null(table);
+  assert_close(dea_result_table_number(table, 0, "voltages", 0), 161, 0, 0);
+  assert_close(dea_result_table_number(table, 0, "first_force_N", 0), taut_force(0), 1e-14, 0);
+  assert_close(dea_result_table_number(table, 0, "last_force_N", 0), taut_force(0), 1e-14, 0);
   tear_down_result();
 }
 
@@ -349,35 +279,22 @@ TEST(test_stops)
   static const size_t counts[] = {73, 42, 0};
   for (int i = 0; i < 3; i++) {
     film = (struct dea_film){.end_V = ends_V[i]};
-    assert_int_equal(run_film(usual), DEA_E_NO_EQUILIBRIUM);
+    assert_int_equal(run_film(TO_8_KV, ONE_MM), DEA_E_NO_EQUILIBRIUM);
     const struct dea_curve *curve = dea_result_find(result, "spring", "force");
     assert_int_equal(curve->count, counts[i]);
     assert_int_equal(curve->status, DEA_E_NO_EQUILIBRIUM);
     char why[40];
     snprintf(why, sizeof why, "none at %g V", 100.0 * (double)counts[i]);
     assert_non_null(strstr(curve->stopped, why));
-    for (size_t n = 0; n < curve->count; n++) {
-      double V = 100.0 * (double)n;
-      assert_close(curve->points[n].force_N, taut_force(V) - (V > jump_V ? 0.02 : 0), 1e-3, 0);
+    const struct dea_result_table *table =
+        dea_result_find_table(result, "spring", "force", "lines");
+    if (counts[i] > 0) { // to where it jumps
+      assert_close(dea_result_table_number(table, 0, "trusted_voltage_V", 0),
+                   fmin(6300, 100.0 * (double)(counts[i] - 1)), 1e-9, 0);
     }
-    assert_true(counts[i] == 0 || dea_load_point_interpolated(&curve->points[3]));
     tear_down_result();
     dea_context_clear(ctx);
   }
-}
-
-/* Where a state between others is not found, all are computed one after the other. */
-TEST(test_hidden)
-{
-  static const char *const strict[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0000001}", NULL};
-  film = (struct dea_film){.end_V = INFINITY, .hidden_V = 400};
-  assert_int_equal(run_film(strict), DEA_OK);
-  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
-  assert_int_equal(curve->count, 81);
-  for (size_t i = 0; i < 81; i++) {
-    assert_false(dea_load_point_interpolated(&curve->points[i]));
-  }
-  tear_down_result();
 }
 
 static bool interrupted(void *user)
@@ -385,71 +302,16 @@ static bool interrupted(void *user)
   return film.solves == 14;
 }
 
-/* An interrupted line has what was computed, and nothing between. */
+/* An interrupted line has what was computed. */
 TEST(test_interrupted)
 {
-  static const char *const settings[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0002}", NULL};
   film = (struct dea_film){.end_V = INFINITY};
   dea_context_set_interrupt_fn(ctx, interrupted, NULL);
-  assert_int_equal(run_film(settings), DEA_E_INTERRUPTED);
+  assert_int_equal(run_film(TO_8_KV, ONE_MM), DEA_E_INTERRUPTED);
   dea_context_set_interrupt_fn(ctx, NULL, NULL);
-  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
-  assert_int_equal(curve->count, 14);
-  for (size_t i = 0; i < curve->count; i++) {
-    assert_false(dea_load_point_interpolated(&curve->points[i]));
-    assert_true(i == 0 || curve->points[i].voltage_V > curve->points[i - 1].voltage_V);
-    assert_true(curve->points[i].force_N > 0);
-  }
+  assert_int_equal(dea_result_find(result, "spring", "force")->count, 14);
   tear_down_result();
   dea_context_clear(ctx);
-}
-
-/* All but what lies unused between the members. */
-static void assert_same_point(const struct dea_load_point *one, const struct dea_load_point *other)
-{
-  assert_memory_equal(one, other, offsetof(struct dea_load_point, stable));
-  assert_int_equal(one->stable, other->stable);
-  assert_int_equal(one->unstable_modes, other->unstable_modes);
-  assert_int_equal(one->own_flags, other->own_flags);
-}
-
-/* Lines in processes of their own have the points of lines one after the other, up to the first
- * that stops; only the tip is pressed in here. */
-TEST(test_beside)
-{
-  static const char *const settings[3] = {
-      TO_8_KV,
-      "{tip: flat, radius: 2 mm, side: back, depth: [1 mm, 2 mm, 0.5 mm, 3 mm], preload: [180 mN]}",
-      NULL};
-  static const double ends_V[] = {INFINITY, 7250};
-  for (int n = 0; n < 2; n++) {
-    struct dea_design *designs[3];
-    struct dea_device *devices[3];
-    struct dea_result *results[3];
-    const struct dea_curve *curves[3];
-    for (size_t i = 0; i < 3; i++) {
-      film = (struct dea_film){.end_V = ends_V[n], .processes = i + 1};
-      assert_int_equal(run_film(settings), n == 0 ? DEA_OK : DEA_E_NO_EQUILIBRIUM);
-      assert_true((film.solves > 0) == (i == 0));
-      designs[i] = design;
-      devices[i] = device;
-      results[i] = result;
-      curves[i] = dea_result_find(result, "spring", "force");
-      assert_int_equal(curves[i]->count, n == 0 ? 5 * 81 : 73);
-      assert_int_equal(curves[i]->status, curves[0]->status);
-      assert_string_equal(curves[i]->stopped, curves[0]->stopped);
-      for (size_t p = 0; p < curves[i]->count; p++) {
-        assert_same_point(&curves[i]->points[p], &curves[0]->points[p]);
-      }
-    }
-    for (int i = 0; i < 3; i++) {
-      design = designs[i];
-      device = devices[i];
-      result = results[i];
-      tear_down_result();
-    }
-    dea_context_clear(ctx);
-  }
 }
 
 TESTS(context_set_up, context_tear_down)

@@ -1,12 +1,13 @@
 /* Studies "operating-map" and "load-line": what the report draws of model lumped. */
 // ctest: slow, heavy
 #include "design_text.h"
-#include "study/operating_map_figure.h"
 #include "study/study.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 #include "study_run.h"
+
+extern const struct dea_study dea_study_operating_map;
 
 #define VOLTAGES "compute:\n  voltage: {values: [0 kV, 3 kV, 6 kV]}\n"
 
@@ -107,7 +108,7 @@ TEST(test_figures)
 {
   struct run r = run("lumped", map_only, 1, NULL, 0);
   for (size_t f = 0; f < 2; f++) { // the last is of other numbers
-    const struct dea_figure *figure = &dea_operating_map_figures[f];
+    const struct dea_figure *figure = &dea_study_operating_map.figures[f];
     struct dea_plot *plot;
     bool level = false;
     assert_int_equal(dea_plot_create(ctx, figure->name, figure->caption, &plot), DEA_OK);

@@ -2,7 +2,6 @@
 #include "design_text.h"
 #include "failing_allocator.h"
 #include "result/result.h"
-#include "result/time_series.h"
 #include "study/study.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -55,6 +54,22 @@ static void end(struct dea_context *context, struct run *run)
   dea_design_destroy(context, run->design);
 }
 
+extern const struct dea_study dea_study_transient;
+
+/* A table of the study. */
+static const struct dea_result_table *table_of(const struct run *run, const char *name)
+{
+  const struct dea_result_table *table =
+      dea_result_find_table(run->result, "lumped", "transient", name);
+  assert_non_null(table);
+  return table;
+}
+
+static double number(const struct dea_result_table *table, size_t row, const char *key)
+{
+  return dea_result_table_number(table, row, key, 0);
+}
+
 #define PULSES "drive: {waveform: {kind: square, high: 3 kV, frequency: 2 Hz, cycles: 4}}\n"
 
 TEST(test_pulses)
@@ -75,27 +90,28 @@ TEST(test_pulses)
     }
   }
   assert_int_equal(jumps, 8);
-  struct dea_energy_balance energy;
-  assert_true(dea_time_series_balance(run.curve, &energy));
-  assert_true(energy.error < 1e-3 && energy.dissipated_J > 0);
-  struct dea_cycle *cycles;
-  size_t count;
-  int column = dea_time_series_column(run.curve);
-  assert_string_equal(dea_point_columns[column].key, "electrode_edge_u_m");
-  assert_int_equal(
-      dea_time_series_cycles(ctx, run.curve, run.design->drive.waveform, column, &cycles, &count),
-      DEA_OK);
-  assert_int_equal(count, 4);
-  assert_int_equal(dea_time_series_level_end(cycles, count, 0), 3);
+  const struct dea_result_table *energy = table_of(&run, "energy");
+  assert_true(number(energy, 0, "not_accounted") < 1e-3 && number(energy, 0, "dissipated_J") > 0);
+  assert_string_equal(dea_result_table_text(table_of(&run, ""), 0, "quantity"),
+                      "electrode_edge_u_m");
+  const struct dea_result_table *cycles = table_of(&run, "cycles");
+  assert_int_equal(cycles->row_count, 4);
   for (size_t i = 0; i < 4; i++) {
-    assert_true(cycles[i].level_V == 3000 && cycles[i].start_s == 0.5 * (double)i);
-    assert_true(cycles[i].rise_time_s >= 0 && cycles[i].rise_time_s < 0.25);
-    assert_true(i == 0 || cycles[i].farthest > cycles[i - 1].farthest);
+    assert_true(number(cycles, i, "level_V") == 3000 &&
+                number(cycles, i, "start_s") == 0.5 * (double)i);
+    assert_true(number(cycles, i, "rise_time_10_90_s") >= 0 &&
+                number(cycles, i, "rise_time_10_90_s") < 0.25);
+    assert_true(i == 0 || number(cycles, i, "farthest") > number(cycles, i - 1, "farthest"));
   }
-  dea_free(ctx, cycles);
+  const struct dea_result_table *creep = table_of(&run, "creep");
+  assert_int_equal(creep->row_count, 1);
+  assert_true(number(creep, 0, "cycles") == 4 &&
+              number(creep, 0, "creep") ==
+                  number(cycles, 3, "farthest") - number(cycles, 0, "farthest"));
   for (int moves = 0; moves < 2; moves++) { // the centre of a flat film does so by rounding only
     run.curve->points[1].centre_z_m = moves ? 1e-5 : 1e-20;
-    assert_string_equal(dea_point_columns[dea_time_series_column(run.curve)].key,
+    assert_ok(dea_study_transient.tables(ctx, "lumped", run.result));
+    assert_string_equal(dea_result_table_text(table_of(&run, ""), 0, "quantity"),
                         moves ? "centre_z_m" : "electrode_edge_u_m");
   }
   end(ctx, &run);
@@ -109,18 +125,14 @@ TEST(test_stairs)
       ctx, DESIGN "drive: {waveform: {kind: staircase, values: [0.2 kV, 0.4 kV, 0.6 kV, 0.8 kV,\n"
                   "  1 kV, 1.2 kV, 1.4 kV, 1.6 kV], frequency: 3 Hz, cycles: 1}}\n");
   assert_int_equal(run.status, DEA_OK);
-  struct dea_cycle *cycles;
-  size_t count;
-  assert_int_equal(dea_time_series_cycles(ctx, run.curve, run.design->drive.waveform,
-                                          dea_time_series_column(run.curve), &cycles, &count),
-                   DEA_OK);
-  assert_int_equal(count, 8);
-  for (size_t i = 1; i < count; i++) { // about as the square of the voltage
-    double rise = cycles[i].farthest / cycles[i - 1].farthest;
-    double level = cycles[i].level_V / cycles[i - 1].level_V;
+  const struct dea_result_table *cycles = table_of(&run, "cycles");
+  assert_int_equal(cycles->row_count, 8);
+  assert_int_equal(table_of(&run, "creep")->row_count, 8);
+  for (size_t i = 1; i < 8; i++) { // about as the square of the voltage
+    double rise = number(cycles, i, "farthest") / number(cycles, i - 1, "farthest");
+    double level = number(cycles, i, "level_V") / number(cycles, i - 1, "level_V");
     assert_close(rise, level * level, 0.05, 0);
   }
-  dea_free(ctx, cycles);
   end(ctx, &run);
 }
 

@@ -7,7 +7,7 @@
 #include "model/solid/model3d/solid_fields.h"
 #include "model/solid/recovery/line_profile.h"
 #include "result/columns.h"
-#include "result/copies.h"
+#include "result/field_mesh.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -309,12 +309,6 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model,
   return DEA_CHAIN(ctx, status);
 }
 
-static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
-                           const struct dea_model *from, struct dea_load_point *out, bool *found)
-{
-  return DEA_CHAIN(ctx, dea_solver_state_transfer(ctx, &model->at, &from->at, out, found));
-}
-
 static void size(const struct dea_model *model, struct dea_model_size *out)
 {
   *out = (struct dea_model_size){.elements = model->mesh.grid->element_count,
@@ -561,7 +555,6 @@ const struct dea_model_type dea_solid_module = {
     .long_path = long_path,
     .soften = dea_solver_state_soften,
     .push = push,
-    .transfer = transfer,
     .modes = modes,
     .respond = respond,
     .answers = answers,

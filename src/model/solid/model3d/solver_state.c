@@ -4,8 +4,6 @@
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
-#include "model/solid/equilibrium/transfer_solution.h"
-#include "model/solid/mesh/transfer.h"
 #include "model/solid/model3d/solid_state.h"
 
 #include <math.h>
@@ -290,31 +288,6 @@ dea_status dea_solver_state_push(struct dea_context *ctx, struct dea_solver_stat
   dea_free(ctx, displacement);
   DEA_TRY(ctx, status);
   return *found ? owner->point(ctx, owner->model, solver_state->voltage_V, out) : DEA_OK;
-}
-
-dea_status dea_solver_state_transfer(struct dea_context *ctx, struct dea_solver_state *solver_state,
-                                     const struct dea_solver_state *from,
-                                     struct dea_load_point *out, bool *found)
-{
-  const struct dea_step_outcome_owner *owner = &solver_state->outcome.owner;
-  const struct dea_solid *other = from->outcome.owner.solid;
-  const struct dea_grid *grid = owner->solid->problem.grid;
-  dea_solver_state_end_history(ctx, solver_state);
-  *found = false;
-  double *u = dea_solid_alloc(ctx, 3 * grid->node_count, sizeof *u);
-  DEA_TRY_MEMORY(u != NULL);
-  dea_status status = dea_grid_transfer(ctx, other->problem.grid, other->state.u, grid, u);
-  status = status == DEA_OK ? dea_solid_transfer_solution(ctx, owner->solid, from->voltage_V, u,
-                                                          &solver_state->report, found)
-                            : status;
-  dea_free(ctx, u);
-  DEA_TRY(ctx, status);
-  if (*found) {
-    solver_state->voltage_V = from->voltage_V;
-    solver_state->left_a_state = false;
-    DEA_TRY(ctx, owner->point(ctx, owner->model, solver_state->voltage_V, out));
-  }
-  return DEA_OK;
 }
 
 // In time ----------------------------------------------------------------------------------------

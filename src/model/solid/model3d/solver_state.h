@@ -58,11 +58,6 @@ dea_status dea_solver_state_push(struct dea_context *ctx, struct dea_solver_stat
                                  const struct dea_push *push, const double *fold,
                                  struct dea_load_point *out, bool *found);
 
-/* `transfer`, from a model of the same device. */
-dea_status dea_solver_state_transfer(struct dea_context *ctx, struct dea_solver_state *solver_state,
-                                     const struct dea_solver_state *from,
-                                     struct dea_load_point *out, bool *found);
-
 /* `begin`. driven: lent until the history ends; its solid is the owner's. */
 dea_status dea_solver_state_begin(struct dea_context *ctx, struct dea_solver_state *solver_state,
                                   const struct dea_driven_solid *driven,
