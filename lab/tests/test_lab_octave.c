@@ -1,8 +1,4 @@
-/* Files that Octave wrote, read to the last bit; and version 7.3 of .mat, which Octave cannot
- * write: it comes from our own writer, which is libmatio's, and from HDF5 itself for what MATLAB
- * adds. */
-#include "base/h5.h"
-#include "import/mat.h"
+/* Files that Octave wrote, read to the last bit. */
 #include "import_text.h"
 #include "octave.h"
 
@@ -46,11 +42,10 @@ static void check(const char *name, const char *v, const char *z)
 TEST(test_mat)
 {
   octave(NUMBERS "data.v = v'; data.deep.z = z; save('-v6', 'six.mat', 't', 'data');"
-                 "save('-v7', 'seven.mat', 't', 'data'); save('-v4', 'four.mat', 't', 'v', 'z')");
+                 "save('-v7', 'seven.mat', 't', 'data')");
   numbers_back();
   check("six.mat", "data.v", "data.deep.z");
   check("seven.mat", "data.v", "data.deep.z");
-  check("four.mat", "v", "z");
 }
 
 /* MATLAB's variables carry units in their names only. */
@@ -92,47 +87,6 @@ TEST(test_mat_classes)
   dea_table_destroy(ctx, table);
 }
 
-/* HDF5 is in our library and once more below libmatio: both are used one after the other. */
-TEST(test_mat_73)
-{
-  const struct dea_mat_variable variables[] = {
-      {.name = "t", .values = time_s, .count = COUNT},
-      {.name = "v", .values = voltage, .count = COUNT},
-      {.name = "z", .values = laser, .count = COUNT},
-      {.name = "words", .text = "some words"},
-  };
-  octave(NUMBERS);
-  numbers_back();
-  assert_int_equal(dea_mat_write(ctx, in_folder("new.mat"), variables, 4, DEA_MAT_73), DEA_OK);
-  check("new.mat", "v", "z");
-  // Octave reads the HDF5 of it, transposed as MATLAB stores it
-  octave(NUMBERS "l = load('-hdf5', 'new.mat'); n = isnan(v);"
-                 "assert(l.v(~n)(:) == v(~n)); assert(l.t(:) == t)");
-  // a timetable, as MATLAB marks it
-  struct h5 h;
-  dea_h5_begin(&h, ctx, in_folder("new.mat"));
-  hid_t file = H5Fopen(in_folder("new.mat"), H5F_ACC_RDWR, H5P_DEFAULT);
-  assert_true(file >= 0);
-  uint32_t numbers[6] = {3707764736u, 2, 1, 1, 1, 1};
-  hsize_t dims[2] = {6, 1};
-  hid_t space = H5Screate_simple(2, dims, NULL);
-  hid_t set = H5Dcreate2(file, "log", H5T_STD_U32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  assert_true(H5Dwrite(set, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0);
-  hid_t type = H5Tcopy(H5T_C_S1), scalar = H5Screate(H5S_SCALAR);
-  H5Tset_size(type, 9);
-  hid_t attribute = H5Acreate2(set, "MATLAB_class", type, scalar, H5P_DEFAULT, H5P_DEFAULT);
-  assert_true(H5Awrite(attribute, type, "timetable") >= 0);
-  H5Aclose(attribute);
-  H5Sclose(scalar);
-  H5Tclose(type);
-  H5Dclose(set);
-  H5Sclose(space);
-  H5Fclose(file);
-  dea_h5_end(&h);
-  check("new.mat", "v", "z");
-  assert_true(is_said(DEA_NOTE, "'log' is an object"));
-}
-
 TEST(test_damaged_mat)
 {
   static unsigned char bytes[1 << 16];
@@ -144,7 +98,7 @@ TEST(test_damaged_mat)
   write_bytes("short.mat", bytes, n / 2);
   assert_int_equal(dea_table_read(ctx, in_folder("short.mat"), NULL, &table), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "longer than the file"));
-  assert_refused("no.mat", "not a .mat file at all", 22, 0, "the variable at byte 0 is none");
+  assert_refused("no.mat", "not a .mat file at all", 22, 0, "is no .mat file of version 5 or 7.3");
   // a length that the file cannot have: the number of rows of the first variable
   bytes[128 + 32 + 3] = 0x7f;
   write_bytes("claims.mat", bytes, n);
