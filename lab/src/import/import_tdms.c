@@ -4,6 +4,7 @@
  * values lie, their properties), raw values. What a segment does not say stays as the one before
  * said it. Source: NI, "TDMS File Format Internal Structure". */
 #include "import/import.h"
+#include "table/slices.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -47,14 +48,9 @@ struct bytes {
   bool failed; // more was asked for than there is
 };
 
-struct text {
-  const char *text; // in the file's bytes
-  size_t length;
-};
-
 /* "/'group'/'channel'" */
 struct object {
-  struct text path, unit;
+  struct dea_slice path, unit;
   double increment, start_offset; // of its waveform; NAN, 0
   double start_time;              // that this counts from, since 1904; NAN
   double scales;                  // that turn raw values into what is meant; 0: none
@@ -65,15 +61,15 @@ struct object {
   uint64_t values, bytes; // in a chunk of the segment
   bool in_segment;        // has values in it
   size_t total;           // values of all segments
-  size_t column, filled;  // of the table
+  size_t column;          // of the table
 };
 
 struct tdms {
   struct dea_context *ctx;
   const char *file;
-  struct object *objects; // owned
-  size_t count, capacity;
-  size_t *order, order_count, order_room; // objects of the segment with values; owned
+  size_t count, order_count;
+  struct object objects[TDMS_OBJECTS_MAX]; // [count]
+  size_t order[TDMS_OBJECTS_MAX];          // objects of the segment with values
 };
 
 // Metadata ---------------------------------------------------------------------------------------
@@ -184,11 +180,11 @@ static double value_at(const unsigned char *at, uint32_t type, bool big)
   }
 }
 
-static struct text read_text(struct bytes *bytes)
+static struct dea_slice read_text(struct bytes *bytes)
 {
   uint32_t length = read_u32(bytes);
   const unsigned char *at = read_bytes(bytes, length);
-  return (struct text){at != NULL ? (const char *)at : "", at != NULL ? length : 0};
+  return (struct dea_slice){at != NULL ? (const char *)at : "", at != NULL ? length : 0};
 }
 
 static size_t position(const struct bytes *bytes)
@@ -201,30 +197,17 @@ static dea_status refuse(struct tdms *tdms, size_t byte, const char *what)
   return dea_fail(tdms->ctx, DEA_E_IO, "'%s' is damaged at byte %zu: %s", tdms->file, byte, what);
 }
 
-static bool same(struct text a, const char *b)
-{
-  return a.length == strlen(b) && memcmp(a.text, b, a.length) == 0;
-}
-
 /* The object of a path, added when it is new; *out its index. */
-static dea_status find_object(struct tdms *tdms, struct text path, size_t *out)
+static dea_status find_object(struct tdms *tdms, struct dea_slice path, size_t *out)
 {
   for (*out = 0; *out < tdms->count; ++*out) {
-    const struct text *other = &tdms->objects[*out].path;
-    if (other->length == path.length && memcmp(other->text, path.text, path.length) == 0) {
+    if (dea_slice_same(tdms->objects[*out].path, path)) {
       return DEA_OK;
     }
   }
   if (tdms->count == TDMS_OBJECTS_MAX) {
     return dea_fail(tdms->ctx, DEA_E_IO, "'%s' has more than %d channels", tdms->file,
                     (int)TDMS_OBJECTS_MAX);
-  }
-  if (tdms->count == tdms->capacity) {
-    size_t capacity = 2 * tdms->capacity + 16;
-    void *moved = dea_resize(tdms->ctx, tdms->objects, capacity, sizeof *tdms->objects);
-    DEA_TRY_MEMORY(moved != NULL);
-    tdms->objects = moved;
-    tdms->capacity = capacity;
   }
   tdms->objects[tdms->count++] = (struct object){.path = path,
                                                  .unit = {"", 0},
@@ -236,21 +219,12 @@ static dea_status find_object(struct tdms *tdms, struct text path, size_t *out)
 }
 
 /* Puts an object among those with values in this segment, once. */
-static dea_status add_to_order(struct tdms *tdms, size_t object)
+static void add_to_order(struct tdms *tdms, size_t object)
 {
-  if (tdms->objects[object].in_segment) {
-    return DEA_OK;
+  if (!tdms->objects[object].in_segment) {
+    tdms->objects[object].in_segment = true;
+    tdms->order[tdms->order_count++] = object;
   }
-  if (tdms->order_count == tdms->order_room) {
-    size_t capacity = 2 * tdms->order_room + 16;
-    void *moved = dea_resize(tdms->ctx, tdms->order, capacity, sizeof *tdms->order);
-    DEA_TRY_MEMORY(moved != NULL);
-    tdms->order = moved;
-    tdms->order_room = capacity;
-  }
-  tdms->objects[object].in_segment = true;
-  tdms->order[tdms->order_count++] = object;
-  return DEA_OK;
 }
 
 static void read_from_order(struct tdms *tdms, size_t object)
@@ -280,7 +254,8 @@ static dea_status read_index(struct tdms *tdms, struct bytes *bytes, size_t inde
                     tdms->file);
   }
   if (length == same_values) {
-    return object->type != 0 ? add_to_order(tdms, index)
+    add_to_order(tdms, index);
+    return object->type != 0 ? DEA_OK
                              : refuse(tdms, position(bytes), "values 'as before' of a new channel");
   }
   uint32_t type = read_u32(bytes), dimension = read_u32(bytes);
@@ -309,7 +284,8 @@ static dea_status read_index(struct tdms *tdms, struct bytes *bytes, size_t inde
   object->type = type;
   object->values = values;
   object->bytes = size > 0 ? values * size : total;
-  return add_to_order(tdms, index);
+  add_to_order(tdms, index);
+  return DEA_OK;
 }
 
 /* Whether an object's values are raw, and slope and intercept make of them what is meant. */
@@ -320,24 +296,25 @@ static bool is_linear(const struct object *object)
 }
 
 /* What NI writes of the scale of raw values. */
-static void read_scale(struct object *object, struct text name, struct text text, double value)
+static void read_scale(struct object *object, struct dea_slice name, struct dea_slice text,
+                       double value)
 {
-  if (same(name, "NI_Number_Of_Scales") && value > 0) {
+  if (dea_slice_is(name, "NI_Number_Of_Scales") && value > 0) {
     object->scales = value;
-  } else if (same(name, "NI_Scaling_Status")) {
-    object->applied = same(text, "scaled");
-  } else if (same(name, "NI_Scale[0]_Scale_Type")) {
-    object->linear = same(text, "Linear");
-  } else if (same(name, "NI_Scale[0]_Linear_Slope")) {
+  } else if (dea_slice_is(name, "NI_Scaling_Status")) {
+    object->applied = dea_slice_is(text, "scaled");
+  } else if (dea_slice_is(name, "NI_Scale[0]_Scale_Type")) {
+    object->linear = dea_slice_is(text, "Linear");
+  } else if (dea_slice_is(name, "NI_Scale[0]_Linear_Slope")) {
     object->slope = value;
-  } else if (same(name, "NI_Scale[0]_Linear_Y_Intercept")) {
+  } else if (dea_slice_is(name, "NI_Scale[0]_Linear_Y_Intercept")) {
     object->intercept = value;
   }
 }
 
 static void read_property(struct bytes *bytes, struct object *object)
 {
-  struct text name = read_text(bytes), text = {"", 0};
+  struct dea_slice name = read_text(bytes), text = {"", 0};
   uint32_t type = read_u32(bytes);
   double value = NAN;
   if (type == TDMS_TEXT) {
@@ -348,13 +325,14 @@ static void read_property(struct bytes *bytes, struct object *object)
     value = at != NULL ? value_at(at, type, bytes->big) : NAN;
     bytes->failed = bytes->failed || at == NULL;
   }
-  if (same(name, "wf_increment") && value > 0) {
+  if (dea_slice_is(name, "wf_increment") && value > 0) {
     object->increment = value;
-  } else if (same(name, "wf_start_time") && value > 0 && isnan(object->start_time)) {
+  } else if (dea_slice_is(name, "wf_start_time") && value > 0 && isnan(object->start_time)) {
     object->start_time = value; // of its first values: what is appended may write it again
-  } else if (same(name, "wf_start_offset") && isfinite(value)) {
+  } else if (dea_slice_is(name, "wf_start_offset") && isfinite(value)) {
     object->start_offset = value;
-  } else if ((same(name, "unit_string") || same(name, "NI_UnitDescription")) && text.length > 0) {
+  } else if ((dea_slice_is(name, "unit_string") || dea_slice_is(name, "NI_UnitDescription")) &&
+             text.length > 0) {
     object->unit = text;
   } else {
     read_scale(object, name, text, value);
@@ -373,7 +351,7 @@ static dea_status read_metadata(struct tdms *tdms, struct bytes *bytes, bool new
   }
   uint32_t count = read_u32(bytes);
   for (uint32_t i = 0; i < count && !bytes->failed; i++) {
-    struct text path = read_text(bytes);
+    struct dea_slice path = read_text(bytes);
     uint32_t length = read_u32(bytes);
     size_t index;
     if (bytes->failed) {
@@ -589,7 +567,7 @@ static dea_status read_segments(struct tdms *tdms, const unsigned char *start, s
 }
 
 /* A part of a path, "/'group'/'channel'", its quotes undone ('' is one); *next behind it. */
-static size_t path_part(struct text path, size_t *next, char out[NAME_SIZE])
+static size_t path_part(struct dea_slice path, size_t *next, char out[NAME_SIZE])
 {
   size_t n = 0, i = *next;
   if (i + 1 < path.length && path.text[i] == '/' && path.text[i + 1] == '\'') {
@@ -704,9 +682,10 @@ static dea_status add_columns(struct tdms *tdms, struct dea_table *table)
   return DEA_OK;
 }
 
-/* Times of day as seconds after the first of the file, so that channels with times of their own
- * stay where they are; as doubles since 1904 they end at half a microsecond. */
-static void relate_times(struct tdms *tdms, struct dea_table *table)
+/* Applies the scales that the file gives. Times of day become seconds after the first of the file,
+ * so that channels with times of their own stay where they are; as doubles since 1904 they end at
+ * half a microsecond. */
+static void finish_values(struct tdms *tdms, struct dea_table *table)
 {
   double first = INFINITY;
   for (size_t i = 0; i < tdms->count; i++) {
@@ -717,11 +696,17 @@ static void relate_times(struct tdms *tdms, struct dea_table *table)
   }
   for (size_t i = 0; i < tdms->count; i++) {
     const struct object *object = &tdms->objects[i];
-    if (object->type == TDMS_TIME && object->column != SIZE_MAX) {
-      struct dea_table_column *column = &table->columns[object->column];
-      for (size_t k = 0; k < column->count; k++) {
-        column->values[k] -= first;
-      }
+    const bool time = object->type == TDMS_TIME, linear = is_linear(object);
+    if (object->column == SIZE_MAX || !(time || linear)) {
+      continue;
+    }
+    struct dea_table_column *column = &table->columns[object->column];
+    for (size_t k = 0; k < column->count; k++) {
+      column->values[k] -= time ? first : 0;
+      column->values[k] =
+          linear ? column->values[k] * object->slope + object->intercept : column->values[k];
+    }
+    if (time) {
       column->origin_s = first;
       dea_free(tdms->ctx, column->unit);
       column->unit = dea_copy_text(tdms->ctx, "s", 1);
@@ -729,33 +714,20 @@ static void relate_times(struct tdms *tdms, struct dea_table *table)
   }
 }
 
-/* Applies the scales that the file gives. */
-static void scale_values(const struct tdms *tdms, struct dea_table *table)
-{
-  for (size_t i = 0; i < tdms->count; i++) {
-    const struct object *object = &tdms->objects[i];
-    if (object->column != SIZE_MAX && is_linear(object)) {
-      struct dea_table_column *column = &table->columns[object->column];
-      for (size_t k = 0; k < column->count; k++) {
-        column->values[k] = column->values[k] * object->slope + object->intercept;
-      }
-    }
-  }
-}
-
 static dea_status read_tdms(struct dea_context *ctx, const char *file, const unsigned char *bytes,
                             size_t length, struct dea_table *out)
 {
-  struct tdms tdms = {.ctx = ctx, .file = file};
-  dea_status status = read_segments(&tdms, bytes, length, NULL);
-  status = status == DEA_OK ? add_columns(&tdms, out) : status;
-  status = status == DEA_OK ? read_segments(&tdms, bytes, length, out) : status;
+  struct tdms *tdms = dea_alloc(ctx, 1, sizeof *tdms);
+  DEA_TRY_MEMORY(tdms != NULL);
+  tdms->ctx = ctx;
+  tdms->file = file;
+  dea_status status = read_segments(tdms, bytes, length, NULL);
+  status = status == DEA_OK ? add_columns(tdms, out) : status;
+  status = status == DEA_OK ? read_segments(tdms, bytes, length, out) : status;
   if (status == DEA_OK) {
-    relate_times(&tdms, out);
-    scale_values(&tdms, out);
+    finish_values(tdms, out);
   }
-  dea_free(ctx, tdms.objects);
-  dea_free(ctx, tdms.order);
+  dea_free(ctx, tdms);
   return status;
 }
 
