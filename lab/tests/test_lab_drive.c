@@ -511,4 +511,4 @@ TEST(test_benches_that_cannot_play)
   free(second);
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, protocol_tear_down)
