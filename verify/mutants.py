@@ -41,7 +41,7 @@ OWN_TESTS = [
     ("lab/src/drive/drive_watch.c", "lab_drive_output lab_leak lab_drive"),
     ("lab/src/drive/drive_output.c", "lab_drive_output"),
     ("lab/src/protocol/protocol_export.c", "lab_export"),
-    ("lab/src/protocol/step.c", "lab_leak lab_checks"),
+    ("lab/src/protocol/protocol_check.c", "lab_leak lab_checks"),
     ("lab/src/protocol/", "lab_checks lab_protocol"),
     ("lab/src/import/import_mat.c", "lab_mat"),
     ("lab/src/import/", "lab_import lab_import_odd lab_import_frames lab_import_mapping "

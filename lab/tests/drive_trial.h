@@ -38,7 +38,8 @@ struct trial {
 
 static inline void trial_open(struct trial *t, const char *text, const struct fake_script *script)
 {
-  *t = (struct trial){.protocol = good_protocol(ctx, text), .stall_s = 3};
+  good_protocol(text);
+  *t = (struct trial){.protocol = p, .stall_s = 3};
   t->daq = malloc(sizeof *t->daq);
   assert_non_null(t->daq);
   fake_daq_open(t->protocol, script, &t->flag, t->daq);
@@ -75,7 +76,6 @@ static inline void trial_read(struct trial *t)
 static inline void trial_close(struct trial *t)
 {
   dea_recording_destroy(ctx, t->recording);
-  dea_protocol_destroy(ctx, t->protocol);
   free(t->daq);
 }
 

@@ -46,8 +46,7 @@ struct fake_daq {
 struct fake_sensor {
   struct dea_instrument common;
   const struct fake_daq *daq; // whose clock it has
-  size_t frames, starts, stops, clocks;
-  double clock_s;                           // of the computer, when its own was set
+  size_t frames, starts, stops;
   double value;                             // of its reading; NAN: none. 0: the usual one
   long fail_start, fail_frame, wrong_frame; // frames at which it fails, or has no time
   double x_m[3];
@@ -162,14 +161,6 @@ static inline dea_status fake_sensor_start(struct dea_context *context,
   return (long)sensor->starts++ == sensor->fail_start ? fake_fail(context, "start") : DEA_OK;
 }
 
-static inline void fake_sensor_set_clock(struct dea_instrument *instrument)
-{
-  struct fake_sensor *sensor = (struct fake_sensor *)instrument;
-  assert_true(sensor->starts == 1 && sensor->frames == 0);
-  sensor->clock_s = dea_clock_s();
-  sensor->clocks++;
-}
-
 static inline dea_status fake_sensor_get(struct dea_context *context,
                                          struct dea_instrument *instrument, double timeout_s,
                                          const struct dea_sink *sink)
@@ -203,7 +194,6 @@ static const struct dea_instrument_type fake_daq_type = {.name = "fake DAQ",
                                                          .close = fake_close};
 static const struct dea_instrument_type fake_sensor_type = {.name = "fake sensor",
                                                             .start = fake_sensor_start,
-                                                            .set_clock = fake_sensor_set_clock,
                                                             .get = fake_sensor_get,
                                                             .stop = fake_sensor_stop,
                                                             .close = fake_close};

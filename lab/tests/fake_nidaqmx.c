@@ -1,9 +1,21 @@
-/* A library that looks like NI-DAQmx. */
-#include "fake_library.h"
+/* A library that looks like NI-DAQmx: libnidaqmx.so.1. */
+#pragma GCC diagnostic ignored "-Wmissing-prototypes"
+#include "fake_daq.h"
 
+#include <stdarg.h>
+#include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <string.h>
 
+static struct fake_daq fake;
+static int good_calls;
 static char error[256];
+
+__attribute__((visibility("default"))) struct fake_daq *fake_daq(void)
+{
+  return &fake;
+}
 
 struct task {
   int used, input, channels, started, clocked;
@@ -13,13 +25,17 @@ static struct task all[8];
 /* Logs a call; the code that it is to give. */
 static int32_t call(const char *name, const char *format, ...)
 {
+  size_t length = strlen(fake.log);
+  char text[400];
   va_list arguments;
   va_start(arguments, format);
-  bool fails = fake_fails(name, format, arguments);
+  vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  if (!fails) {
+  snprintf(fake.log + length, sizeof fake.log - length, "%s(%s)\n", name, text);
+  if (strcmp(fake.fails, name) != 0 || good_calls++ < fake.fails_after) {
     return 0;
   }
+  good_calls = 0;
   snprintf(error, sizeof error, "The fake says no.\nTask: %s", name);
   return fake.code;
 }
@@ -33,7 +49,6 @@ static int32_t call(const char *name, const char *format, ...)
     }                                                                                              \
   } while (0)
 
-API DAQmxCreateTask(const char *name, void **task);
 API DAQmxCreateTask(const char *name, void **task)
 {
   (void)name;
@@ -50,8 +65,6 @@ API DAQmxCreateTask(const char *name, void **task)
 }
 
 API DAQmxCreateAOVoltageChan(void *task, const char *channel, const char *name, double min,
-                             double max, int32_t units, const char *scale);
-API DAQmxCreateAOVoltageChan(void *task, const char *channel, const char *name, double min,
                              double max, int32_t units, const char *scale)
 {
   (void)task, (void)name, (void)scale;
@@ -59,8 +72,6 @@ API DAQmxCreateAOVoltageChan(void *task, const char *channel, const char *name, 
   return 0;
 }
 
-API DAQmxCreateAIVoltageChan(void *task, const char *channel, const char *name, int32_t wiring,
-                             double min, double max, int32_t units, const char *scale);
 API DAQmxCreateAIVoltageChan(void *task, const char *channel, const char *name, int32_t wiring,
                              double min, double max, int32_t units, const char *scale)
 {
@@ -73,8 +84,6 @@ API DAQmxCreateAIVoltageChan(void *task, const char *channel, const char *name, 
 }
 
 API DAQmxCfgSampClkTiming(void *task, const char *source, double rate, int32_t edge, int32_t mode,
-                          uint64_t samples);
-API DAQmxCfgSampClkTiming(void *task, const char *source, double rate, int32_t edge, int32_t mode,
                           uint64_t samples)
 {
   (void)source, (void)samples;
@@ -83,7 +92,6 @@ API DAQmxCfgSampClkTiming(void *task, const char *source, double rate, int32_t e
   return 0;
 }
 
-API DAQmxGetSampClkRate(void *task, double *rate);
 API DAQmxGetSampClkRate(void *task, double *rate)
 {
   (void)task;
@@ -91,7 +99,6 @@ API DAQmxGetSampClkRate(void *task, double *rate)
   return 0;
 }
 
-API DAQmxCfgDigEdgeStartTrig(void *task, const char *source, int32_t edge);
 API DAQmxCfgDigEdgeStartTrig(void *task, const char *source, int32_t edge)
 {
   CALL("CfgDigEdgeStartTrig", "%s %d", source, edge);
@@ -99,7 +106,6 @@ API DAQmxCfgDigEdgeStartTrig(void *task, const char *source, int32_t edge)
   return 0;
 }
 
-API DAQmxCfgOutputBuffer(void *task, uint32_t samples);
 API DAQmxCfgOutputBuffer(void *task, uint32_t samples)
 {
   (void)task;
@@ -107,14 +113,12 @@ API DAQmxCfgOutputBuffer(void *task, uint32_t samples)
   return call("CfgOutputBuffer", "%u", samples);
 }
 
-API DAQmxSetWriteRegenMode(void *task, int32_t mode);
 API DAQmxSetWriteRegenMode(void *task, int32_t mode)
 {
   (void)task;
   return call("SetWriteRegenMode", "%d", mode);
 }
 
-API DAQmxStartTask(void *task);
 API DAQmxStartTask(void *task)
 {
   struct task *t = task;
@@ -124,7 +128,6 @@ API DAQmxStartTask(void *task)
   return 0;
 }
 
-API DAQmxStopTask(void *task);
 API DAQmxStopTask(void *task)
 {
   struct task *t = task;
@@ -133,7 +136,6 @@ API DAQmxStopTask(void *task)
   return call("StopTask", "%s", t->input ? "inputs" : "output");
 }
 
-API DAQmxClearTask(void *task);
 API DAQmxClearTask(void *task)
 {
   ((struct task *)task)->used = 0;
@@ -141,7 +143,6 @@ API DAQmxClearTask(void *task)
   return call("ClearTask", "%s", "");
 }
 
-API DAQmxIsTaskDone(void *task, uint32_t *done);
 API DAQmxIsTaskDone(void *task, uint32_t *done)
 {
   (void)task;
@@ -149,8 +150,6 @@ API DAQmxIsTaskDone(void *task, uint32_t *done)
   return fake.dry_after > 0 && fake.read >= (size_t)fake.dry_after ? -200290 : 0;
 }
 
-API DAQmxWriteAnalogF64(void *task, int32_t samples, uint32_t start, double timeout_s,
-                        uint32_t layout, const double *volts, int32_t *written, uint32_t *reserved);
 API DAQmxWriteAnalogF64(void *task, int32_t samples, uint32_t start, double timeout_s,
                         uint32_t layout, const double *volts, int32_t *written, uint32_t *reserved)
 {
@@ -173,7 +172,6 @@ API DAQmxWriteAnalogF64(void *task, int32_t samples, uint32_t start, double time
   return 0;
 }
 
-API DAQmxGetReadAvailSampPerChan(void *task, uint32_t *samples);
 API DAQmxGetReadAvailSampPerChan(void *task, uint32_t *samples)
 {
   struct task *t = task;
@@ -182,8 +180,6 @@ API DAQmxGetReadAvailSampPerChan(void *task, uint32_t *samples)
   return call("Avail", "%u", *samples);
 }
 
-API DAQmxReadAnalogF64(void *task, int32_t samples, double timeout_s, uint32_t layout,
-                       double *volts, uint32_t capacity, int32_t *read, uint32_t *reserved);
 API DAQmxReadAnalogF64(void *task, int32_t samples, double timeout_s, uint32_t layout,
                        double *volts, uint32_t capacity, int32_t *read, uint32_t *reserved)
 {
@@ -203,7 +199,6 @@ API DAQmxReadAnalogF64(void *task, int32_t samples, double timeout_s, uint32_t l
   return *read < samples ? -200284 : 0;
 }
 
-API DAQmxGetExtendedErrorInfo(char *text, uint32_t size);
 API DAQmxGetExtendedErrorInfo(char *text, uint32_t size)
 {
   snprintf(text, size, "%s", error);

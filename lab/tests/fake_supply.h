@@ -1,7 +1,8 @@
-/* A high-voltage supply that speaks SCPI, imitated on the loopback interface. It has one queue of
- * commands, which it works off one after the other, whoever sent them, and an output that follows
- * what was set at a finite rate. What its output really is can be asked at any moment, and that is
- * what the tests compare with what dea says. */
+/* A high-voltage supply, imitated: one that speaks SCPI on the loopback interface, or one on a
+ * serial line, which is a pseudo-terminal. On the network it has one queue of commands, which it
+ * works off one after the other, whoever sent them; on a line a small buffer, and an answer to each
+ * command. Its output follows what was set at a finite rate. What that really is can be asked at
+ * any moment, and that is what the tests compare with what dea says. */
 #pragma once
 
 #include "base/clock.h"
@@ -22,16 +23,25 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { SUPPLY_LINES = 8192, SUPPLY_LINE = 96, SUPPLY_CLIENTS = 4 };
+enum {
+  SUPPLY_LINES = 1024,
+  SUPPLY_LINE = 96,
+  SUPPLY_CLIENTS = 4,
+  SUPPLY_ANSWER = 256,
+  SUPPLY_SHVPS_BUFFER = 19
+};
 
 enum supply_fault {
   SUPPLY_GOOD,
-  SUPPLY_SLOW,     // each command takes `delay_s`
+  SUPPLY_SLOW,     // each command takes `delay_s`; on a line its answer
   SUPPLY_HANGS,    // nothing is read, done or answered any more; the output stays
-  SUPPLY_LIES,     // as slow, but *OPC? is answered at once
   SUPPLY_GARBLES,  // answers are noise
-  SUPPLY_HANGS_UP, // the connection is closed, and new ones too
-  SUPPLY_FAULTS
+  SUPPLY_HANGS_UP, // the connection is closed, and new ones too; a line is gone for good
+  // of one on the network
+  SUPPLY_LIES, // as slow, but *OPC? is answered at once
+  // of one on a line
+  SUPPLY_ERRS,  // answers are errors, and nothing is done
+  SUPPLY_RESETS // once: at 0 V with the settings of the start, without a word
 };
 
 /* What is wrong with its output and its meter, of a supply that answers all the same; 0: nothing.
@@ -58,19 +68,22 @@ struct supply_line {
 struct supply {
   // set before the start
   double slew_V_per_s, delay_s;
+  struct supply_wrong wrong;
   bool one_client;    // others wait until it has gone
   int serial;         // of what it says of itself
   int port;           // 0: any
-  bool deaf;          // to what would set it: it is operated at its front
   const char *behind; // its measured voltage, which is in kV then: "E3", " kV"; NULL: in V
   bool comma;         // a decimal one
+  // of one on a line
+  void (*answer)(struct supply *s, const char *command, char out[SUPPLY_ANSWER]);
+  const char *error;
+  size_t buffer, fragment; // characters of a command; bytes that are sent at a time, 0: all
   // of the test
   pthread_t thread;
   pthread_mutex_t lock;
   atomic_bool ended;
   atomic_int fault;
   // of the thread, under the lock
-  struct supply_wrong wrong;
   double shown_V; // by the meter
   int listener, clients[SUPPLY_CLIENTS];
   char partial[SUPPLY_CLIENTS][SUPPLY_LINE];
@@ -85,6 +98,12 @@ struct supply {
   double watchdog_s;
   size_t commands;
   unsigned noise;
+  // of one on a line
+  int line, keep; // keep: the device's end, held open so that it stays a line without a user
+  char device[64];
+  int mode;
+  double frequency_Hz;
+  size_t overflows, hurried; // hurried: came before the one before was answered
 };
 
 /* The output follows; called with the lock held. */
@@ -103,15 +122,20 @@ static inline void supply_follow(struct supply *s)
   s->turned_s = now_s;
 }
 
-static inline void supply_answer(struct supply *s, int client, const char *text)
+static inline void supply_garble(struct supply *s, char *text)
 {
-  char line[64];
-  int length = snprintf(line, sizeof line, "%s\n", text);
-  if (atomic_load(&s->fault) == SUPPLY_GARBLES) {
-    for (int i = 0; i < length - 1; i++) {
-      line[i] = (char)(' ' + (s->noise = s->noise * 1103515245u + 12345u) / 65536u % 94u);
-    }
+  for (; atomic_load(&s->fault) == SUPPLY_GARBLES && *text != '\0'; text++) {
+    *text = (char)(' ' + (s->noise = s->noise * 1103515245u + 12345u) / 65536u % 94u);
   }
+}
+
+// On the network ---------------------------------------------------------------------------------
+
+static inline void supply_answer(struct supply *s, int client, char *text)
+{
+  char line[SUPPLY_ANSWER];
+  supply_garble(s, text);
+  int length = snprintf(line, sizeof line, "%s\n", text);
   if (client >= 0 && s->clients[client] >= 0) {
     (void)!send(s->clients[client], line, (size_t)length, MSG_NOSIGNAL | MSG_DONTWAIT);
   }
@@ -119,10 +143,10 @@ static inline void supply_answer(struct supply *s, int client, const char *text)
 
 static inline void supply_do(struct supply *s, const struct supply_line *line)
 {
-  char text[64];
+  char text[SUPPLY_ANSWER] = "";
   s->commands++;
   const char *word = strncmp(line->text, "C1:", 3) == 0 ? line->text + 3 : line->text;
-  if ((s->deaf || s->wrong.deaf) && strchr(word, '?') == NULL) {
+  if (s->wrong.deaf && strchr(word, '?') == NULL) {
     return;
   }
   if (sscanf(word, "VOLT %lf", &s->set_V) == 1 || sscanf(word, "BSWV OFST,%lf", &s->set_V) == 1) {
@@ -130,27 +154,28 @@ static inline void supply_do(struct supply *s, const struct supply_line *line)
   }
   if (strcmp(word, "OUTP ON") == 0 || strcmp(word, "OUTP OFF") == 0) {
     s->on = word[6] == 'N';
-  } else if (strcmp(line->text, "*IDN?") == 0) {
+  } else if (strcmp(word, "*IDN?") == 0) {
     snprintf(text, sizeof text, "ACME,Supply,%d,1", s->serial);
-    supply_answer(s, line->client, text);
-  } else if (strcmp(line->text, "*OPC?") == 0) {
-    supply_answer(s, line->client, "1");
-  } else if (strcmp(line->text, "OUTP?") == 0) {
-    supply_answer(s, line->client, s->on ? "1" : "0");
-  } else if (strcmp(line->text, "SYST:ERR?") == 0) {
-    supply_answer(s, line->client, "0,\"No error\"");
-  } else if (strcmp(line->text, "MEAS:VOLT?") == 0) {
+  } else if (strcmp(word, "*OPC?") == 0) {
+    snprintf(text, sizeof text, "1");
+  } else if (strcmp(word, "OUTP?") == 0) {
+    snprintf(text, sizeof text, "%d", s->on);
+  } else if (strcmp(word, "SYST:ERR?") == 0) {
+    snprintf(text, sizeof text, "0,\"No error\"");
+  } else if (strcmp(word, "MEAS:VOLT?") == 0) {
     supply_follow(s);
     snprintf(text, sizeof text, "%.3f%s", s->shown_V * (s->behind != NULL ? 1e-3 : 1),
              s->behind != NULL ? s->behind : "");
     if (s->comma) {
       *strchr(text, '.') = ',';
     }
-    supply_answer(s, line->client, text);
-  } else if (strcmp(line->text, "WDOG ON") == 0 || strcmp(line->text, "WDOG FEED") == 0) {
+  } else if (strcmp(word, "WDOG ON") == 0 || strcmp(word, "WDOG FEED") == 0) {
     s->fed_s = dea_clock_s();
-  } else if (strcmp(line->text, "WDOG OFF") == 0) {
+  } else if (strcmp(word, "WDOG OFF") == 0) {
     s->fed_s = (double)NAN;
+  }
+  if (text[0] != '\0') {
+    supply_answer(s, line->client, text);
   }
 }
 
@@ -224,7 +249,7 @@ static inline void supply_work(struct supply *s)
   }
 }
 
-static inline void *supply_run(void *user)
+static inline void *supply_serve(void *user)
 {
   struct supply *s = user;
   while (!atomic_load(&s->ended)) {
@@ -263,21 +288,13 @@ static inline void *supply_run(void *user)
   return NULL;
 }
 
-/* s: zero but for what is set before the start, or one that was stopped, which has its voltage
- * still. */
-static inline void supply_start(struct supply *s)
+static inline void supply_listen(struct supply *s)
 {
   int on = 1;
   struct sockaddr_in address = {.sin_family = AF_INET,
                                 .sin_port = htons((uint16_t)s->port),
                                 .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
   socklen_t size = sizeof address;
-  s->slew_V_per_s = s->slew_V_per_s > 0 ? s->slew_V_per_s : 100e3;
-  s->turned_s = dea_clock_s();
-  s->fed_s = (double)NAN;
-  s->noise = 1;
-  s->count = 0;
-  atomic_store(&s->ended, false);
   for (int i = 0; i < SUPPLY_CLIENTS; i++) {
     s->clients[i] = -1;
   }
@@ -290,14 +307,146 @@ static inline void supply_start(struct supply *s)
   assert_int_equal(listen(s->listener, 8), 0);
   assert_int_equal(getsockname(s->listener, (struct sockaddr *)&address, &size), 0);
   s->port = ntohs(address.sin_port);
+}
+
+// On a line --------------------------------------------------------------------------------------
+
+static inline void supply_reset(struct supply *s)
+{
+  s->mode = 0;
+  s->set_V = s->volts = 0;
+  s->frequency_Hz = 1;
+}
+
+static inline void supply_write(struct supply *s, const char *text)
+{
+  size_t length = strlen(text);
+  while (length > 0) {
+    size_t part = s->fragment > 0 && s->fragment < length ? s->fragment : length;
+    if (write(s->line, text, part) != (ssize_t)part) {
+      return;
+    }
+    text += part;
+    length -= part;
+    dea_clock_wait(length > 0 ? 5e-4 : 0);
+  }
+}
+
+/* Does a command and answers it; called without the lock. */
+static inline void supply_reply(struct supply *s, const char *command)
+{
+  char out[SUPPLY_ANSWER], line[SUPPLY_ANSWER + 2];
+  int fault = atomic_load(&s->fault);
+  pthread_mutex_lock(&s->lock);
+  s->commands++;
+  snprintf(out, sizeof out, "%s", s->error);
+  if (fault != SUPPLY_ERRS) {
+    s->answer(s, command, out);
+  }
+  supply_follow(s);
+  supply_garble(s, out);
+  double delay_s = fault == SUPPLY_SLOW ? s->delay_s : 1e-3;
+  pthread_mutex_unlock(&s->lock);
+  dea_clock_wait(delay_s);
+  struct pollfd entry = {.fd = s->line, .events = POLLIN};
+  if (fault == SUPPLY_GOOD && poll(&entry, 1, 0) > 0) {
+    s->hurried++;
+  }
+  snprintf(line, sizeof line, "%s\r", out);
+  supply_write(s, line);
+}
+
+static inline void supply_close_line(struct supply *s)
+{
+  if (s->line >= 0) {
+    close(s->keep);
+    close(s->line);
+    s->line = s->keep = -1;
+  }
+}
+
+static inline void *supply_serve_line(void *user)
+{
+  struct supply *s = user;
+  char command[64], c;
+  size_t length = 0;
+  bool reset = false;
+  while (!atomic_load(&s->ended)) {
+    int fault = atomic_load(&s->fault);
+    struct pollfd entry = {.fd = s->line, .events = POLLIN};
+    pthread_mutex_lock(&s->lock);
+    if (fault == SUPPLY_RESETS && !reset) {
+      supply_reset(s);
+      reset = true;
+    }
+    supply_follow(s);
+    pthread_mutex_unlock(&s->lock);
+    if (fault == SUPPLY_HANGS_UP) {
+      supply_close_line(s);
+    }
+    if (fault == SUPPLY_HANGS || s->line < 0) {
+      dea_clock_wait(5e-3);
+    } else if (poll(&entry, 1, 5) > 0 && read(s->line, &c, 1) == 1) {
+      if (c == '\r') {
+        command[length] = '\0';
+        if (length > 0) {
+          supply_reply(s, command);
+        }
+        length = 0;
+      } else if (length < s->buffer) {
+        command[length++] = c;
+      } else {
+        s->overflows++;
+      }
+    }
+  }
+  return NULL;
+}
+
+/* Skips the test where there is no pseudo-terminal. */
+static inline void supply_open_line(struct supply *s)
+{
+  supply_reset(s);
+  s->on = true;
+  s->line = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  if (s->line < 0 || grantpt(s->line) != 0 || unlockpt(s->line) != 0 ||
+      ptsname_r(s->line, s->device, sizeof s->device) != 0) {
+    skip();
+  }
+  s->keep = open(s->device, O_RDWR | O_NOCTTY | O_CLOEXEC);
+  assert_true(s->keep >= 0);
+}
+
+// Either -----------------------------------------------------------------------------------------
+
+/* s: zero but for what is set before the start, or one that was stopped, which has its voltage
+ * still. */
+static inline void supply_start(struct supply *s)
+{
+  s->slew_V_per_s = s->slew_V_per_s > 0 ? s->slew_V_per_s : 100e3;
+  s->turned_s = dea_clock_s();
+  s->fed_s = (double)NAN;
+  s->noise = 1;
+  s->count = 0;
+  atomic_store(&s->ended, false);
+  if (s->answer != NULL) {
+    supply_open_line(s);
+  } else {
+    supply_listen(s);
+  }
   pthread_mutex_init(&s->lock, NULL);
-  assert_int_equal(pthread_create(&s->thread, NULL, supply_run, s), 0);
+  assert_int_equal(
+      pthread_create(&s->thread, NULL, s->answer != NULL ? supply_serve_line : supply_serve, s), 0);
 }
 
 static inline void supply_stop(struct supply *s)
 {
   atomic_store(&s->ended, true);
   pthread_join(s->thread, NULL);
+  if (s->answer != NULL) {
+    supply_close_line(s);
+    return;
+  }
   for (int i = 0; i < SUPPLY_CLIENTS; i++) {
     if (s->clients[i] >= 0) {
       close(s->clients[i]);
@@ -352,4 +501,21 @@ static inline bool supply_reaches(struct supply *s, double volts, double within_
     dea_clock_wait(0.002);
   }
   return false;
+}
+
+/* Waits until it is at 0 V and stays there; how long that took, INFINITY: it did not. */
+static inline double supply_comes_down(struct supply *s, double zero_V, double within_s)
+{
+  double began_s = dea_clock_s(), took_s = (double)INFINITY;
+  while (dea_clock_s() < began_s + within_s) {
+    if (supply_volts(s) > zero_V) {
+      took_s = (double)INFINITY;
+    } else if (isinf(took_s)) {
+      took_s = dea_clock_s() - began_s;
+    } else if (dea_clock_s() > began_s + took_s + 0.3) {
+      return took_s;
+    }
+    dea_clock_wait(0.005);
+  }
+  return (double)INFINITY;
 }

@@ -16,23 +16,49 @@ static inline void write_bytes(const char *name, const void *bytes, size_t lengt
   fclose(file);
 }
 
-/* The table of a file with these bytes; the test fails when it cannot be read. */
-static inline struct dea_table *read_bytes(const char *name, const void *bytes, size_t length)
+static struct dea_table *table, *joined; // that was read last, and joined to it
+
+static inline int import_tear_down(void **state)
 {
-  struct dea_table *table;
-  write_bytes(name, bytes, length);
+  dea_table_destroy(ctx, table);
+  dea_table_destroy(ctx, joined);
+  return tear_down(state);
+}
+
+static inline dea_status read_table(const char *file)
+{
+  dea_table_destroy(ctx, table);
   dea_finding_clear(ctx);
-  if (dea_table_read(ctx, in_folder(name), NULL, &table) != DEA_OK) {
+  dea_context_clear(ctx);
+  return dea_table_read(ctx, file, NULL, &table);
+}
+
+/* Reads a file with these bytes; the test fails when it cannot be read. */
+static inline void read_bytes(const char *name, const void *bytes, size_t length)
+{
+  write_bytes(name, bytes, length);
+  if (read_table(in_folder(name)) != DEA_OK) {
     size_t count;
     const struct dea_finding *findings = dea_finding_get(ctx, &count);
     fail_msg("%s: %s; %s", name, dea_context_message(ctx), count > 0 ? findings[0].text : "");
   }
-  return table;
 }
 
-static inline struct dea_table *read_text(const char *name, const char *text)
+static inline void read_text(const char *name, const char *text)
 {
-  return read_bytes(name, text, strlen(text));
+  read_bytes(name, text, strlen(text));
+}
+
+/* Joins another text to the table. */
+static inline dea_status join_text(const char *name, const char *text)
+{
+  struct dea_table *first = table;
+  table = NULL;
+  read_text(name, text);
+  dea_table_destroy(ctx, joined);
+  joined = table;
+  table = first;
+  return dea_table_join(ctx, table, joined);
 }
 
 static inline struct dea_mapping *map_text(const char *text)
@@ -49,7 +75,7 @@ static inline struct dea_mapping *map_text(const char *text)
 /* The recording of a text file; map: of a mapping, NULL guesses. */
 static inline struct dea_recording *record_file(const char *name, const char *text, const char *map)
 {
-  struct dea_table *table = read_text(name, text);
+  read_text(name, text);
   struct dea_mapping *mapping = map != NULL ? map_text(map) : NULL;
   struct dea_recording *recording;
   if (dea_table_record(ctx, table, mapping, &recording) != DEA_OK) {
@@ -58,12 +84,10 @@ static inline struct dea_recording *record_file(const char *name, const char *te
     fail_msg("%s; %s", dea_context_message(ctx), count > 0 ? findings[count - 1].text : "");
   }
   dea_mapping_destroy(ctx, mapping);
-  dea_table_destroy(ctx, table);
   return recording;
 }
 
-static inline const struct dea_table_column *column_of(const struct dea_table *table,
-                                                       const char *name)
+static inline const struct dea_table_column *column_of(const char *name)
 {
   for (size_t i = 0; i < table->column_count; i++) {
     if (strcmp(table->columns[i].name, name) == 0) {
@@ -76,10 +100,10 @@ static inline const struct dea_table_column *column_of(const struct dea_table *t
 }
 
 /* A column with this name and unit and exactly these values. */
-static inline void assert_column(const struct dea_table *table, const char *name, const char *unit,
-                                 const double *values, size_t count)
+static inline void assert_column(const char *name, const char *unit, const double *values,
+                                 size_t count)
 {
-  const struct dea_table_column *column = column_of(table, name);
+  const struct dea_table_column *column = column_of(name);
   assert_string_equal(column->unit, unit);
   assert_int_equal(column->count, count);
   for (size_t i = 0; i < count; i++) {
@@ -93,11 +117,9 @@ static inline void assert_column(const struct dea_table *table, const char *name
 static inline void assert_refused(const char *name, const void *bytes, size_t length, size_t line,
                                   const char *part)
 {
-  struct dea_table *table;
   size_t count;
   write_bytes(name, bytes, length);
-  dea_finding_clear(ctx);
-  assert_int_equal(dea_table_read(ctx, in_folder(name), NULL, &table), DEA_E_IO);
+  assert_int_equal(read_table(in_folder(name)), DEA_E_IO);
   assert_null(table);
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = 0; i < count; i++) {
@@ -128,9 +150,9 @@ static inline void assert_all_refused(const char *name, const struct refused *ca
 /* For failing_each: reads a file that is there. */
 static inline void read_again(struct dea_context *own, const char *name)
 {
-  struct dea_table *table;
-  failing_check(own, dea_table_read(own, in_folder(name), NULL, &table));
-  dea_table_destroy(own, table);
+  struct dea_table *again;
+  failing_check(own, dea_table_read(own, in_folder(name), NULL, &again));
+  dea_table_destroy(own, again);
 }
 
 /* Whether a finding of at least that severity holds a text. */

@@ -7,16 +7,40 @@
 
 static const struct dea_reduce_options plain = {NAN, NAN, NAN, 0.0, NAN};
 
-static inline struct dea_reduction *reduced(const struct dea_recording *r,
-                                            const struct dea_reduce_options *options)
+static struct dea_recording r;    // that was made last
+static struct dea_reduction *out; // of it
+
+/* Of a bench, in place of the one before. */
+static inline void record(const struct signal_bench *b, uint64_t seed)
 {
-  struct dea_reduction *out;
+  signal_free(&r);
+  r = signal_record(b, seed);
+}
+
+/* Of a voltage and a displacement, to be filled. */
+static inline void record_two(double rate_Hz, size_t count)
+{
+  signal_free(&r);
+  r = (struct dea_recording){.file = "", .title = "", .complete = true};
+  signal_channel(&r, "voltage", DEA_CHANNEL_VOLTAGE, rate_Hz, count);
+  signal_channel(&r, "displacement", DEA_CHANNEL_DISPLACEMENT, rate_Hz, count);
+}
+
+static inline void reduce(const struct dea_reduce_options *options)
+{
+  dea_reduction_destroy(ctx, out);
   dea_finding_clear(ctx);
-  dea_status status = dea_reduce(ctx, r, options, &out);
+  dea_status status = dea_reduce(ctx, &r, options, &out);
   if (status != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
-  return out;
+}
+
+static inline int reduced_tear_down(void **state)
+{
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+  return context_tear_down(state);
 }
 
 static inline bool noted(const char *words)
@@ -47,12 +71,4 @@ static inline struct signal_bench line_laser(void)
   b.lost = 0.03;
   b.drift_per_s = 1e-6;
   return b;
-}
-
-static inline struct dea_recording two_channels(double rate_Hz, size_t count)
-{
-  struct dea_recording r = {.file = "", .title = "", .complete = true};
-  signal_channel(&r, "voltage", DEA_CHANNEL_VOLTAGE, rate_Hz, count);
-  signal_channel(&r, "displacement", DEA_CHANNEL_DISPLACEMENT, rate_Hz, count);
-  return r;
 }

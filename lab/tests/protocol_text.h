@@ -24,22 +24,35 @@ static inline void write_in_folder(const char *name, const char *text)
   fclose(file);
 }
 
+static struct dea_protocol *p; // that was read last
+
+static inline int protocol_tear_down(void **state)
+{
+  dea_protocol_destroy(ctx, p);
+  return tear_down(state);
+}
+
+static inline dea_status protocol_read(const char *file, const struct dea_override *sets,
+                                       size_t count)
+{
+  dea_protocol_destroy(ctx, p);
+  p = NULL;
+  return dea_protocol_read(ctx, &dea_film_of_design, file, sets, count, &p);
+}
+
 /* Reads text as protocol.yaml beside a good design.yaml. */
-static inline dea_status protocol_of(struct dea_context *context, const char *text,
-                                     struct dea_protocol **out)
+static inline dea_status protocol_of(const char *text)
 {
   write_in_folder("design.yaml", GOOD_DESIGN);
   write_in_folder("protocol.yaml", text);
-  return dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, out);
+  return protocol_read(in_folder("protocol.yaml"), NULL, 0);
 }
 
-static inline struct dea_protocol *good_protocol(struct dea_context *context, const char *text)
+static inline void good_protocol(const char *text)
 {
-  struct dea_protocol *protocol;
-  dea_finding_clear(context);
-  if (protocol_of(context, text, &protocol) != DEA_OK) {
-    print_findings(context);
-    fail_msg("%s: %s", text, dea_context_message(context));
+  dea_finding_clear(ctx);
+  if (protocol_of(text) != DEA_OK) {
+    print_findings(ctx);
+    fail_msg("%s: %s", text, dea_context_message(ctx));
   }
-  return protocol;
 }

@@ -1,35 +1,33 @@
-/* The SHVPS as a supply of fake_line_supply.h, and `dea drive` on it. */
+/* The SHVPS as a supply on a line, and `dea drive` on it. */
 #pragma once
 
-#include "fake_line_supply.h"
 #include "supply_drive.h"
 
 static const double shvps_range_V = 2500;
 
-static inline void shvps_answer(struct line_supply *s, const char *command,
-                                char out[LINE_SUPPLY_ANSWER])
+static inline void shvps_answer(struct supply *s, const char *command, char out[SUPPLY_ANSWER])
 {
   double value;
   int number;
   if (sscanf(command, "SVset%lf", &value) == 1) {
     s->set_V = s->wrong.deaf ? s->set_V : value;
-    snprintf(out, LINE_SUPPLY_ANSWER, "%.0f", value);
+    snprintf(out, SUPPLY_ANSWER, "%.0f", value);
   } else if (sscanf(command, "SSwMode%d", &number) == 1) {
     s->mode = number;
-    snprintf(out, LINE_SUPPLY_ANSWER, "%d", number);
+    snprintf(out, SUPPLY_ANSWER, "%d", number);
   } else if (sscanf(command, "SF%lf", &value) == 1) {
     s->frequency_Hz = value;
-    snprintf(out, LINE_SUPPLY_ANSWER, "%.3f", value);
+    snprintf(out, SUPPLY_ANSWER, "%.3f", value);
   } else if (strcmp(command, "SSwSrc0") == 0) {
-    snprintf(out, LINE_SUPPLY_ANSWER, "0");
+    snprintf(out, SUPPLY_ANSWER, "0");
   } else if (strcmp(command, "QF") == 0) {
-    snprintf(out, LINE_SUPPLY_ANSWER, "%.3f", s->frequency_Hz);
+    snprintf(out, SUPPLY_ANSWER, "%.3f", s->frequency_Hz);
   } else if (strcmp(command, "QVnow") == 0) {
-    snprintf(out, LINE_SUPPLY_ANSWER, "%.0f", s->lied_V);
+    snprintf(out, SUPPLY_ANSWER, "%.0f", s->shown_V);
   } else if (strcmp(command, "QVmax") == 0) {
-    snprintf(out, LINE_SUPPLY_ANSWER, "%.0f", shvps_range_V);
+    snprintf(out, SUPPLY_ANSWER, "%.0f", shvps_range_V);
   } else if (strcmp(command, "QName") == 0) {
-    snprintf(out, LINE_SUPPLY_ANSWER, "bench 5");
+    snprintf(out, SUPPLY_ANSWER, "bench 5");
   }
 }
 
@@ -54,7 +52,7 @@ static inline void shvps_protocol_of(const char *device, const char *waveform, c
 }
 
 /* A triangle, 4 s a cycle. */
-static inline void shvps_protocol(const struct line_supply *s, double highest_kV, int cycles,
+static inline void shvps_protocol(const struct supply *s, double highest_kV, int cycles,
                                   const char *more)
 {
   char waveform[128];
@@ -64,18 +62,20 @@ static inline void shvps_protocol(const struct line_supply *s, double highest_kV
   shvps_protocol_of(s->device, waveform, more);
 }
 
-static inline void shvps_begin(struct line_supply *s)
+static inline void shvps_begin(struct supply *s)
 {
-  s->answer = shvps_answer;
+  s->answer = s->answer != NULL ? s->answer : shvps_answer;
   s->error = "Err";
-  s->buffer = LINE_SUPPLY_BUFFER;
-  line_supply_start(s);
+  s->buffer = SUPPLY_SHVPS_BUFFER;
+  supply_start(s);
 }
 
-/* Whatever the one before has left: a line may have the name of another. */
-static inline pid_t shvps_arm(const char *file)
+/* One that plays triangles of 2 kV, and is above 1 kV; the program that drives it. */
+static inline pid_t shvps_playing(struct supply *s, const char *more)
 {
-  const char *const arguments[] = {"drive", "p.yaml", "--arm", "--checked", "-f", "-o", file, NULL};
-  supply_end_guards(0);
-  return supply_begin(arguments);
+  shvps_begin(s);
+  shvps_protocol(s, 2, 20, more);
+  pid_t child = supply_arm_checked("played.h5");
+  assert_true(supply_reaches(s, 1000, 10));
+  return child;
 }

@@ -16,12 +16,14 @@ static const double supply_zero_V = 20;
 /* More keys of `safety`. */
 static const char *supply_safety = ", guard_time: 2 s";
 
+enum { SUPPLY_NO_DEA = 127 }; // exit code, of the shell too
+
 #define SUPPLY_MEASURES ", measure: \"MEAS:VOLT?\""
+
+static const char *supply_host = "127.0.0.1";
 
 /* Longer times than usual, as the machine may be busy. Writes p.yaml: a triangle of 0 to 2 kV,
  * `seconds` cycles of 1 s. more: keys of the supply. */
-static const char *supply_host = "127.0.0.1";
-
 static inline void supply_protocol(const struct supply *s, int seconds, const char *more)
 {
   char text[2048];
@@ -39,61 +41,86 @@ static inline void supply_protocol(const struct supply *s, int seconds, const ch
   command_write("p.yaml", text);
 }
 
-/* Ends the guards that went on after the end of their programs, which are children of the test
- * then; `but`: of them; 0: all. What they would do is not done any more. */
-static inline void supply_end_guards(pid_t but)
+/* The only child of a process, if it has one: of a program that drives, its guard; of the test, the
+ * guard that went on after the end of its program. 0: none. */
+static inline pid_t supply_child_of(pid_t parent)
 {
   char path[64];
-  int child;
-  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)getpid(), (int)getpid());
+  int child = 0;
+  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
   FILE *file = fopen(path, "r");
-  while (file != NULL && fscanf(file, "%d", &child) == 1) {
-    if (child != but && kill(child, SIGKILL) == 0) {
-      waitpid(child, NULL, 0);
-    }
-  }
   if (file != NULL) {
+    child = fscanf(file, "%d", &child) == 1 ? child : 0;
     fclose(file);
+  }
+  return child;
+}
+
+/* Ends the guards that went on, which write no more to a line or a port whose name another has. */
+static inline void supply_end_guards(void)
+{
+  for (pid_t child; (child = supply_child_of(getpid())) > 0;) {
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
   }
 }
 
 static inline int supply_tear_down(void **state)
 {
-  supply_end_guards(0);
+  supply_end_guards();
   return command_tear_down(state);
 }
 
-/* Starts dea with these arguments, at most 11 and a NULL; what it says goes to out.txt, err.txt. */
-static inline pid_t supply_begin(const char *const *arguments)
+/* Starts dea in a folder with arguments as a shell reads them; what it says goes to out.txt and
+ * err.txt there. */
+static inline pid_t supply_begin_in(const char *in, const char *arguments)
 {
-  char state[600];
-  char *all[16] = {"dea"};
-  size_t n = 1;
-  while (arguments[n - 1] != NULL && n < 15) {
-    all[n] = (char *)arguments[n - 1];
-    n++;
-  }
-  snprintf(state, sizeof state, "%s/state", command_folder);
+  char state[600], text[1000];
+  snprintf(state, sizeof state, "%s/state", in);
+  snprintf(text, sizeof text, "exec '%s' %s >out.txt 2>err.txt", DEA_COMMAND, arguments);
   prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
   fflush(NULL);
   pid_t child = fork();
   assert_true(child >= 0);
   if (child == 0) {
     setenv("XDG_STATE_HOME", state, 1);
-    if (chdir(command_folder) != 0 || freopen("out.txt", "w", stdout) == NULL ||
-        freopen("err.txt", "w", stderr) == NULL) {
-      _exit(99);
+    if (chdir(in) == 0) {
+      execl("/bin/sh", "sh", "-c", text, (char *)NULL);
     }
-    execv(DEA_COMMAND, all);
-    _exit(98);
+    _exit(SUPPLY_NO_DEA);
   }
   return child;
 }
 
+static inline pid_t supply_begin(const char *arguments)
+{
+  return supply_begin_in(command_folder, arguments);
+}
+
 static inline pid_t supply_arm(const char *file)
 {
-  const char *const arguments[] = {"drive", "p.yaml", "--arm", "-f", "-o", file, NULL};
-  return supply_begin(arguments);
+  char text[64];
+  snprintf(text, sizeof text, "drive p.yaml --arm -f -o %s", file);
+  return supply_begin(text);
+}
+
+/* Whatever the one before has left: a line may have the name of another. */
+static inline pid_t supply_arm_checked(const char *file)
+{
+  char text[64];
+  snprintf(text, sizeof text, "drive p.yaml --arm --checked -f -o %s", file);
+  supply_end_guards();
+  return supply_begin(text);
+}
+
+/* A supply that plays the usual protocol, and is above a voltage; the program that drives it. */
+static inline pid_t supply_playing(struct supply *s, double volts)
+{
+  supply_start(s);
+  supply_protocol(s, 20, SUPPLY_MEASURES);
+  pid_t child = supply_arm("played.h5");
+  assert_true(supply_reaches(s, volts, 10));
+  return child;
 }
 
 /* Waits for the end; the exit code, or -(signal). Reads what was said. */
@@ -115,36 +142,44 @@ static inline int supply_wait(pid_t child, double within_s)
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
-static inline int supply_run_dea(const char *const *arguments, double within_s)
+static inline int supply_run_dea(const char *arguments, double within_s)
 {
   return supply_wait(supply_begin(arguments), within_s);
 }
 
-/* Sends a signal to the one child of a program that drives: its guard. */
 static inline void supply_signal_guard(pid_t parent, int number)
 {
-  char path[64];
-  int child;
-  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
-  FILE *file = fopen(path, "r");
-  if (file == NULL) {
-    skip(); // a kernel without that list
-  }
-  size_t sent = 0;
-  while (fscanf(file, "%d", &child) == 1) {
-    sent += kill(child, number) == 0;
-  }
-  fclose(file);
-  assert_int_equal(sent, 1);
-}
-
-static inline void supply_kill_guard(pid_t parent)
-{
-  supply_signal_guard(parent, SIGKILL);
+  pid_t guard = supply_child_of(parent);
+  assert_true(guard > 0 && kill(guard, number) == 0);
 }
 
 /* What dea says of the output, from the line of its report. */
 static inline bool supply_said_zero(void)
 {
   return strstr(command_out, "output            at 0 V") != NULL;
+}
+
+/* 0 V is asked for, also with the word of somebody who has looked. */
+static const char supply_zero[] = "drive p.yaml --zero",
+                  supply_checked[] = "drive p.yaml --zero --checked";
+
+static inline void supply_check_zero(struct supply *s, const char *arguments)
+{
+  int code = supply_run_dea(arguments, 60);
+  if (code != 0 || !supply_said_zero() || supply_volts(s) > supply_zero_V) {
+    fail_msg("exit code %d, %.0f V: %s%s", code, supply_volts(s), command_out, command_err);
+  }
+}
+
+/* Whether the supply was at 0 V when dea said so, and stayed there. */
+static inline void supply_check_said(struct supply *s, int code)
+{
+  double volts = supply_volts(s);
+  (void)supply_highest(s);
+  dea_clock_wait(2); // what it has in its queue
+  double later_V = supply_highest(s);
+  if (supply_said_zero() && !(volts <= supply_zero_V && later_V <= supply_zero_V)) {
+    fail_msg("'at 0 V' and exit code %d, with %.0f V at the end and %.0f V later", code, volts,
+             later_V);
+  }
 }

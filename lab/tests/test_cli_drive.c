@@ -21,12 +21,12 @@ TEST(test_who_plays)
       command_run("drive " EXAMPLE " --set channels=null --set 'amplifier.min_voltage=0 V' --set "
                   "'instruments=[{kind: shvps, device: /dev/ttyACM0}, {kind: scpi, address: a, "
                   "output: VOLT %g}, {kind: scpi, address: b, readings: [{name: leakage, query: "
-                  "\"MEAS:CURR?\", quantity: current}]}, {kind: comedi}]'"),
+                  "\"MEAS:CURR?\", quantity: current}]}, {kind: nidaqmx}]'"),
       0);
   assert_contains(command_out, "1  shvps             plays the output, gives readings\n",
                   "2  scpi              plays the output, gives readings\n",
                   "3  scpi              gives readings\n",
-                  "4  comedi            plays the output, reads the channels\n");
+                  "4  nidaqmx           plays the output, reads the channels\n");
 }
 
 /* The paper's 16 kV for the film of 200 um are more than its amplifier gives. */

@@ -108,7 +108,7 @@ TEST(test_slow_start_and_a_sensor)
   trial_open(&t, SQUARE CHANNELS, &script);
   trial_play(&t, true);
   assert_int_equal(t.status, DEA_OK);
-  assert_true(t.sensor.clocks == 1 && t.sensor.clock_s >= t.daq->begun_s);
+  assert_true(t.sensor.common.start_s >= t.daq->begun_s);
   trial_close(&t);
 }
 
@@ -511,4 +511,4 @@ TEST(test_benches_that_cannot_play)
   free(second);
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, protocol_tear_down)

@@ -37,7 +37,7 @@ TEST(test_stops_what_was_opened)
            "  - {kind: scpi, address: 127.0.0.1, port: %d, readings: "
            "[{name: a, query: \"A?\", quantity: force}]}\n",
            supply.port, emulator_no_port());
-  struct dea_protocol *p = good_protocol(ctx, text);
+  good_protocol(text);
   assert_int_equal(dea_drive_run(ctx, p, &options, &report), DEA_E_INSTRUMENT);
   emulator_stop(&supply);
   assert_non_null(strstr(supply.log, "OUTP ON\n"));
@@ -46,7 +46,6 @@ TEST(test_stops_what_was_opened)
   assert_string_equal(end, "SYST:ERR?\nVOLT 0\n*OPC?\nOUTP OFF\n");
   assert_int_equal(report.zero.state, DEA_ZERO_COMMANDED); // it has no 'measure'
   assert_non_null(strstr(dea_context_message(ctx), "Connection refused"));
-  dea_protocol_destroy(ctx, p);
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, protocol_tear_down)

@@ -89,6 +89,8 @@ TEST(test_waveform)
     assert_true(voltage_kV == due && control_V == due);
   }
   assert_string_equal(strchr(at, '\n'), "\n");
+  command_expect("import ex/waveform.mat -o w.h5", 0, "1001 samples from 0 s, 1000 Hz");
+  command_prints("recording w.h5", 0, "0 to 4 kV");
   command_expect("drive @/lab/examples/cyclic.yaml --export ex" SETS, 5, "--force replaces it");
   command_expect("drive @/lab/examples/cyclic.yaml --export no --set channels=null", 2,
                  "nothing to be recorded");

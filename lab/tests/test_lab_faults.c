@@ -10,7 +10,7 @@
 #include <sys/resource.h>
 
 enum { TOGETHER = 8, METERS_TOGETHER = 16 };
-static const double zero_V = 20, limit_s = 60, after_s = 2;
+static const double limit_s = 60, after_s = 2;
 
 enum fault {
   NONE,
@@ -104,17 +104,7 @@ static void start_supply(struct supply *s, const struct run *r)
 
 static pid_t begin_drive(const char *folder)
 {
-  pid_t child = fork();
-  if (child == 0) {
-    if (chdir(folder) != 0 || freopen("out", "w", stdout) == NULL ||
-        freopen("err", "w", stderr) == NULL) {
-      _exit(99);
-    }
-    setenv("XDG_STATE_HOME", folder, 1);
-    execl(DEA_COMMAND, "dea", "drive", "p.yaml", "--arm", "-o", "r.h5", (char *)NULL);
-    _exit(98);
-  }
-  return child;
+  return supply_begin_in(folder, "drive p.yaml --arm -o r.h5");
 }
 
 static pid_t start_drive(const struct run *r, const char *folder, int port)
@@ -133,7 +123,7 @@ static pid_t start_drive(const struct run *r, const char *folder, int port)
           "instruments:\n"
           "  - {kind: scpi, address: 127.0.0.1, port: %d, timeout: 1 s, setup: [OUTP ON],\n"
           "     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF%s}\n",
-          zero_V, port, r->measures ? ", measure: \"MEAS:VOLT?\", is_off: \"OUTP?\"" : "");
+          supply_zero_V, port, r->measures ? ", measure: \"MEAS:VOLT?\", is_off: \"OUTP?\"" : "");
   fclose(file);
   return begin_drive(folder);
 }
@@ -185,20 +175,6 @@ static bool has_text(const char *folder, const char *name, const char *text)
   return text != NULL ? strstr(bytes, text) != NULL : length > 0;
 }
 
-/* The guard of a program, while that one lives; 0: none. */
-static pid_t guard_of(pid_t program)
-{
-  char path[64];
-  int guard = 0;
-  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)program, (int)program);
-  FILE *file = fopen(path, "r");
-  if (file != NULL) {
-    guard = fscanf(file, "%d", &guard) == 1 ? guard : 0;
-    fclose(file);
-  }
-  return guard;
-}
-
 /* A guard that goes on after its program, and is a child by now, is not to write to the next line
  * or port of that name. */
 static void end_guard(pid_t guard)
@@ -228,7 +204,7 @@ static void make_run(size_t i)
   (void)supply_reaches(s, 1, 10); // it plays
   began_s = dea_clock_s();
   fault_at_s = began_s + r->fault_s;
-  const pid_t guard = guard_of(child);
+  const pid_t guard = supply_child_of(child);
   while (now_s < began_s + limit_s && !(gone && now_s > ended_s + after_s)) {
     now_s = dea_clock_s();
     if (!faulty && now_s >= fault_at_s && !gone) {
@@ -247,10 +223,10 @@ static void make_run(size_t i)
       r->code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
       r->end_V = supply_volts(s);
       (void)supply_highest(s);
-      r->said_zero = r->ended && (has_text(folder, "out", "  at 0 V") ||
-                                  has_text(folder, "err", "the output is at 0 V"));
+      r->said_zero = r->ended && (has_text(folder, "out.txt", "  at 0 V") ||
+                                  has_text(folder, "err.txt", "the output is at 0 V"));
     }
-    up_s = supply_volts(s) > zero_V ? now_s : up_s;
+    up_s = supply_volts(s) > supply_zero_V ? now_s : up_s;
     dea_clock_wait(0.004);
   }
   if (!gone) {
@@ -260,7 +236,7 @@ static void make_run(size_t i)
   r->later_V = supply_highest(s);
   r->zero_s = now_s - up_s > 0.5 ? fmax(up_s - fault_at_s, 0) : INFINITY;
   r->alarm_s = ended_s - fault_at_s;
-  snprintf(state, sizeof state, "dea/supplies/scpi-127.0.0.1-%d", s->port);
+  snprintf(state, sizeof state, "state/dea/supplies/scpi-127.0.0.1-%d", s->port);
   r->clean = !has_text(folder, state, NULL);
   end_guard(guard);
   supply_stop(s);
@@ -270,8 +246,8 @@ static void make_run(size_t i)
 /* What must never be. A guard may still have been at work on what a dead program left. */
 static bool is_wrong(const struct run *r)
 {
-  bool at_zero = r->end_V <= zero_V && r->later_V <= zero_V;
-  if ((r->code == 0 && !r->ended) || r->code == 98) {
+  bool at_zero = r->end_V <= supply_zero_V && r->later_V <= supply_zero_V;
+  if ((r->code == 0 && !r->ended) || r->code == SUPPLY_NO_DEA) {
     return true; // it never ended, or never began: such a run shows nothing
   }
   if (r->said_zero && (!at_zero || !r->measures)) {
@@ -420,46 +396,19 @@ static void choose_meter(struct meter_run *r, unsigned seed)
   r->zero_s = INFINITY;
 }
 
-/* Either of the two. */
-struct imitation {
-  bool serial;
-  struct supply network;
-  struct line_supply line;
-};
-
-static double volts_of(struct imitation *m)
-{
-  return m->serial ? line_supply_volts(&m->line) : supply_volts(&m->network);
-}
-
-static double highest_of(struct imitation *m)
-{
-  return m->serial ? line_supply_highest(&m->line) : supply_highest(&m->network);
-}
-
-static void go_wrong(struct imitation *m, const struct supply_wrong *wrong)
-{
-  if (m->serial) {
-    line_supply_go_wrong(&m->line, wrong);
-  } else {
-    supply_go_wrong(&m->network, wrong);
-  }
-}
-
-static void start_imitation(struct imitation *m, const struct meter_run *r)
+static void start_imitation(struct supply *s, const struct meter_run *r)
 {
   unsigned seed = r->seed + 1;
-  memset(m, 0, sizeof *m);
-  m->serial = r->serial;
-  m->network.slew_V_per_s = m->line.slew_V_per_s = uniform(&seed, 20e3, 200e3);
+  memset(s, 0, sizeof *s);
+  s->slew_V_per_s = uniform(&seed, 20e3, 200e3);
   if (r->serial) {
-    shvps_begin(&m->line);
+    shvps_begin(s);
   } else {
-    supply_start(&m->network);
+    supply_start(s);
   }
 }
 
-static void write_meter_protocol(const struct meter_run *r, const struct imitation *m,
+static void write_meter_protocol(const struct meter_run *r, const struct supply *m,
                                  const char *folder)
 {
   static const char *const shapes[] = {
@@ -482,20 +431,20 @@ static void write_meter_protocol(const struct meter_run *r, const struct imitati
           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 3 s}\n"
           "instruments:\n",
           shape, r->frequency_Hz, played_s * r->frequency_Hz, r->serial ? ", min_voltage: 0 V" : "",
-          zero_V);
+          supply_zero_V);
   if (r->serial) {
-    fprintf(file, "  - {kind: shvps, device: %s, timeout: 3 s, queue: 1 s}\n", m->line.device);
+    fprintf(file, "  - {kind: shvps, device: %s, timeout: 3 s, queue: 1 s}\n", m->device);
   } else {
     fprintf(file,
             "  - {kind: scpi, address: 127.0.0.1, port: %d, timeout: 1 s, setup: [OUTP ON], queue: "
             "1 s,\n     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF, "
             "measure: \"MEAS:VOLT?\"}\n",
-            m->network.port);
+            m->port);
   }
   fclose(file);
 }
 
-static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, const char *folder)
+static void play_meter(struct meter_run *r, struct supply *m, pid_t child, const char *folder)
 {
   double began_s = dea_clock_s(), ended_s = INFINITY, wrong_s = INFINITY, up_s = began_s;
   double now_s = began_s, until_s = INFINITY, risen_s = INFINITY;
@@ -504,32 +453,32 @@ static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, co
   int status;
   while (now_s < began_s + limit_s && now_s < until_s) {
     now_s = dea_clock_s();
-    double volts = volts_of(m);
-    risen_s = isinf(risen_s) && volts > zero_V ? now_s : risen_s;
+    double volts = supply_volts(m);
+    risen_s = isinf(risen_s) && volts > supply_zero_V ? now_s : risen_s;
     if (isinf(wrong_s) && r->fault_s >= 0 && now_s >= risen_s + r->fault_s &&
         (volts > 0.5 * top_V || !deaf)) {
-      go_wrong(m, &kinds[r->kind].wrong);
+      supply_go_wrong(m, &kinds[r->kind].wrong);
       wrong_s = now_s;
     }
     if (deaf && now_s > wrong_s + deaf_s) {
-      go_wrong(m, &kinds[HONEST].wrong);
+      supply_go_wrong(m, &kinds[HONEST].wrong);
     }
     if (isinf(ended_s) && guard == 0 && now_s > began_s + 0.1) {
-      guard = guard_of(child);
+      guard = supply_child_of(child);
     }
     if (isinf(ended_s) && waitpid(child, &status, WNOHANG) == child) {
       ended_s = now_s;
       r->code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-      r->end_V = volts_of(m);
-      (void)highest_of(m);
-      r->said_zero =
-          has_text(folder, "out", "  at 0 V") || has_text(folder, "err", "the output is at 0 V");
-      r->warned = has_text(folder, "err", "too short to tell a wrong height");
-      r->late = has_text(folder, "err", "did not answer") ||
-                has_text(folder, "err", "behind with its voltage");
+      r->end_V = supply_volts(m);
+      (void)supply_highest(m);
+      r->said_zero = has_text(folder, "out.txt", "  at 0 V") ||
+                     has_text(folder, "err.txt", "the output is at 0 V");
+      r->warned = has_text(folder, "err.txt", "too short to tell a wrong height");
+      r->late = has_text(folder, "err.txt", "did not answer") ||
+                has_text(folder, "err.txt", "behind with its voltage");
       until_s = deaf && r->code != 0 ? wrong_s + deaf_s + watched_s : now_s + after_s;
     }
-    up_s = volts > zero_V ? now_s : up_s;
+    up_s = volts > supply_zero_V ? now_s : up_s;
     if (deaf && now_s > fmax(wrong_s + deaf_s, up_s) + 2 && now_s > ended_s + after_s) {
       break; // down for good
     }
@@ -539,7 +488,7 @@ static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, co
     kill(child, SIGKILL);
     waitpid(child, &status, 0);
   }
-  r->later_V = highest_of(m);
+  r->later_V = supply_highest(m);
   r->zero_s = deaf && now_s > up_s + 1 ? fmax(up_s - wrong_s - deaf_s, 0) : INFINITY;
   end_guard(guard);
 }
@@ -547,7 +496,7 @@ static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, co
 static void make_meter_run(size_t i)
 {
   struct meter_run *r = &meters[i];
-  struct imitation *m = malloc(sizeof *m);
+  struct supply *m = malloc(sizeof *m);
   char folder[560];
   snprintf(folder, sizeof folder, "%s/meter-%u", command_folder, r->seed);
   r->code = -1;
@@ -559,22 +508,18 @@ static void make_meter_run(size_t i)
   if (r->fault_s < 0) {
     struct supply_wrong wrong = kinds[r->kind].wrong;
     wrong.latched = false; // it moves at first, else it stays at 0 V
-    go_wrong(m, &wrong);
+    supply_go_wrong(m, &wrong);
     r->fault_s = kinds[r->kind].wrong.latched ? 0.25 / r->frequency_Hz : -1;
   }
   write_meter_protocol(r, m, folder);
   play_meter(r, m, begin_drive(folder), folder);
-  if (r->serial) {
-    line_supply_stop(&m->line);
-  } else {
-    supply_stop(&m->network);
-  }
+  supply_stop(m);
   free(m);
 }
 
 static bool says_wrong(const struct meter_run *r)
 {
-  return r->said_zero && (r->end_V > zero_V || r->later_V > zero_V);
+  return r->said_zero && (r->end_V > supply_zero_V || r->later_V > supply_zero_V);
 }
 
 /* An honest supply was stopped, or not believed; a wrong one was not noticed. */
@@ -621,7 +566,7 @@ TEST(test_meters_that_lie)
       char folder[560], said[1500];
       wrong++;
       snprintf(folder, sizeof folder, "%s/meter-%u", command_folder, r->seed);
-      (void)read_text(folder, "err", said, sizeof said);
+      (void)read_text(folder, "err.txt", said, sizeof said);
       print_message("seed %u, %s, %s of %g Hz, %s, from %.2f s: exit %d, said at 0 V %d, %.0f V at "
                     "the end, then up to %.0f V\n%s\n",
                     r->seed, kinds[r->kind].name, wave_names[r->wave], r->frequency_Hz,

@@ -14,7 +14,6 @@ struct sensor {
   bool hangs_up;
   atomic_bool goes_on; // after the first frame, once the instrument has been started
   int status;          // of its reply to Start; -1: none
-  const char *text[8];
 };
 
 /* Control: replies to every command of six bytes. */
@@ -336,86 +335,10 @@ TEST(test_not_there)
   emulator_stop(&b.data);
 }
 
-/* Text: answers to Start and Result, or lines unasked. */
-static void serve_text(struct emulator *e, int connection)
-{
-  struct sensor *s = e->user;
-  char bytes[256];
-  size_t length, next = 0;
-  while ((length = emulator_receive(e, connection, bytes, sizeof bytes)) > 0) {
-    bool start = length >= 5 && memcmp(bytes, "Start", 5) == 0;
-    const char *line = start ? "OK\r\n" : next < 8 ? s->text[next++] : NULL;
-    for (; line != NULL; line = start && next < 8 ? s->text[next++] : NULL) {
-      emulator_send(e, connection, line, strlen(line));
-      dea_clock_wait(start ? 0.03 : 0);
-    }
-  }
-}
-
-static const char polled[] =
-    "kind: gocator\naddress: 127.0.0.1\nport: %d\nmode: polled\nstart: no\ntimeout: 5 s\n"
-    "interval: 5 ms\nmeasurements: [{name: centre, id: 3}, {name: tip, id: 7}]\n";
-
-TEST(test_polled)
-{
-  static struct bench b;
-  for (size_t fragment = 0; fragment < 3; fragment++) {
-    memset(&b, 0, sizeof b);
-    b.data.fragment = fragment;
-    b.sensor.text[0] = "OK,M00,03,V151290,D0,M01,07,V18520,D0\r\n";
-    b.sensor.text[1] = "\x01garbage\r\nOK,M00,03,VINVALID,D2,M01,07,V-1,D0,M01,09,V5,D0\r\n";
-    b.sensor.text[2] = "ERROR,Specified measurement ID not found. Please verify your input\r\n";
-    assert_int_equal(begin(&b, polled, serve_text), DEA_OK);
-    assert_message(emulator_get(ctx, b.instrument, &b.sink, 9, 0, 0), DEA_E_INSTRUMENT,
-                   "answers: Specified measurement ID not found");
-    assert_int_equal(b.sink.readings, 4);
-    assert_close(b.sink.reading[0].value, 0.15129, 1e-12, 0);
-    assert_close(b.sink.reading[1].value, 0.01852, 1e-12, 0);
-    assert_true(isnan(b.sink.reading[2].value));
-    assert_close(b.sink.reading[3].value, -1e-6, 1e-12, 0);
-    assert_true(b.sink.reading[2].time_s > b.sink.reading[0].time_s);
-    assert_int_equal(b.instrument->lost, 2); // the garbage and the invalid one
-    assert_true(strncmp(b.data.log, "Result,3,7\r\nResult,3,7\r\n", 24) == 0);
-    end(&b);
-  }
-}
-
-TEST(test_clock)
-{
-  static struct bench b;
-  memset(&b, 0, sizeof b);
-  b.sensor.text[0] = "OK,M00,03,V151290,D0,M01,07,V18520,D0\r\n";
-  assert_int_equal(begin(&b, polled, serve_text), DEA_OK);
-  emulator_check_clock(ctx, b.instrument, &b.sink);
-  end(&b);
-}
-
-TEST(test_text)
-{
-  static struct bench b;
-  static const char text[] =
-      "kind: gocator\naddress: 127.0.0.1\nport: %d\nmode: text\ntimeout: 0.5 s\n"
-      "measurements: [{name: centre, id: 3}]\n";
-  memset(&b, 0, sizeof b);
-  for (size_t i = 0; i < 4; i++) {
-    b.sensor.text[i] = "M00,03,V250,D0\r";
-  }
-  assert_int_equal(begin(&b, text, serve_text), DEA_OK);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 2, 0, 0), DEA_OK);
-  assert_close(b.sink.reading[0].value, 250e-6, 1e-12, 0);
-  assert_message(emulator_get(ctx, b.instrument, &b.sink, 9, 0, 0), DEA_E_INSTRUMENT,
-                 "no measurement came from the Gocator's text");
-  emulator_close(ctx, b.instrument);
-  b.instrument = NULL;
-  emulator_stop(&b.data);
-  emulator_stop(&b.control);
-  assert_string_equal(b.data.log, "Start\r\nStop\r\n");
-}
-
 TEST(test_wrong_keys)
 {
   static const char *const cases[][2] = {
-      {"kind: gocator\nmode: text\n", "without profiles it needs its 'measurements'"},
+      {"kind: gocator\nmode: measurements\n", "without profiles it needs its 'measurements'"},
       {"kind: gocator\nmeasurements: [{name: a, id: 1}, {name: b, id: 1}]\n",
        "measurement 1 is read into 'a' already"},
       {"kind: gocator\nmode: binary\n", "mode"},

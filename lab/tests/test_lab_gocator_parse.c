@@ -1,4 +1,4 @@
-// The Gocator's messages and lines: field by field, in pieces, and damaged.
+// The Gocator's messages: field by field, in pieces, and damaged.
 #include "gocator_bytes.h"
 #include "instrument/gocator_parse.h"
 #include "testing.h"
@@ -80,43 +80,6 @@ TEST(test_odd_messages)
   memset(&g, 0, sizeof g);
   count_events(&g, &b, b.length, seen);
   assert_int_equal(seen[DEA_GDP_BROKEN], 1);
-}
-
-TEST(test_text_line)
-{
-  static const struct {
-    const char *line;
-    size_t count;
-    struct dea_gocator_value values[3];
-  } cases[] = {
-      {"OK,M00,00,V151290,D0,M01,01,V18520,D0", 2, {{0, 151290}, {1, 18520}}},
-      {"M0a,17,V-3,D1", 1, {{17, -3}}},
-      {"OK,M00,00,VINVALID,D2,M00,01,INVALID,D2", 2, {{0, NAN}, {1, NAN}}},
-      {"T123,E0,F7,M00,2,V1.5,D0", 1, {{2, 1.5}}},
-      {"OK", 0, {{0, 0}}},
-      {"", 0, {{0, 0}}},
-      {",,,,", 0, {{0, 0}}},
-      {"M00", 0, {{0, 0}}},
-      {"M00,1", 0, {{0, 0}}},
-      {"M00,1,V", 0, {{0, 0}}},
-      {"M00,1,V1.2.3,M00,4,V5", 1, {{4, 5}}},
-      {"M00,9999999999,V1", 0, {{0, 0}}},
-      {"Mxx,1,V1,M00,2,D1,M00,3,V1", 1, {{3, 1}}},
-  };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    const char *cursor = cases[i].line;
-    struct dea_gocator_value value;
-    size_t count = 0;
-    while (dea_gocator_value_next(&cursor, &value)) {
-      const struct dea_gocator_value *wanted = &cases[i].values[count < 2 ? count : 2];
-      if (count++ >= cases[i].count || value.id != wanted->id ||
-          (isnan(value.thousandths) ? !isnan(wanted->thousandths)
-                                    : value.thousandths != wanted->thousandths)) {
-        fail_msg("'%s': id %ld, %g", cases[i].line, value.id, value.thousandths);
-      }
-    }
-    assert_int_equal(count, cases[i].count);
-  }
 }
 
 TESTS(NULL, NULL)

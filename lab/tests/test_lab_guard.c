@@ -3,36 +3,16 @@
 // ctest: supply
 #include "supply_drive.h"
 
-/* Waits until it is at 0 V and stays there; how long that took, INFINITY: it did not. */
-static double comes_down(struct supply *s, double within_s)
-{
-  double began_s = dea_clock_s(), took_s = INFINITY;
-  while (dea_clock_s() < began_s + within_s) {
-    if (supply_volts(s) > supply_zero_V) {
-      took_s = INFINITY;
-    } else if (isinf(took_s)) {
-      took_s = dea_clock_s() - began_s;
-    } else if (dea_clock_s() > began_s + took_s + 0.3) {
-      return took_s;
-    }
-    dea_clock_wait(0.005);
-  }
-  return INFINITY;
-}
-
 TEST(test_killed)
 {
   static const int signals[] = {SIGKILL, SIGSEGV, SIGABRT, SIGBUS};
   static struct supply s;
   for (size_t i = 0; i < 4; i++) {
     s = (struct supply){.one_client = i % 2 == 1};
-    supply_start(&s);
-    supply_protocol(&s, 20, SUPPLY_MEASURES);
-    pid_t child = supply_arm("killed.h5");
-    assert_true(supply_reaches(&s, 1000, 10));
+    pid_t child = supply_playing(&s, 1000);
     assert_int_equal(kill(child, signals[i]), 0);
     assert_int_equal(supply_wait(child, 5), -signals[i]);
-    double took_s = comes_down(&s, 10);
+    double took_s = supply_comes_down(&s, supply_zero_V, 10);
     print_message("signal %d: at 0 V after %.3f s\n", signals[i], took_s);
     assert_true(isfinite(took_s));
     // it was read back: nothing is in the way of the next
@@ -62,35 +42,28 @@ TEST(test_one_supply_one_program)
   supply_stop(&s);
 }
 
-static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
-
 /* By another name, of which nothing is kept: neither driven beside the first one, nor said to be at
  * 0 V when it was told that. */
 TEST(test_two_names_of_one_supply)
 {
   static struct supply s;
   s = (struct supply){0};
-  supply_start(&s);
-  supply_protocol(&s, 20, SUPPLY_MEASURES);
-  pid_t first = supply_arm("first.h5");
-  assert_true(supply_reaches(&s, 1000, 10));
+  pid_t first = supply_playing(&s, 1000);
   supply_host = "localhost";
   supply_protocol(&s, 5, SUPPLY_MEASURES);
   assert_int_equal(supply_wait(supply_arm("second.h5"), 10), 6);
   assert_contains(command_err, "is driven by another program on this computer");
   assert_true(supply_reaches(&s, 1500, 10)); // and the first one plays on
-  int code = supply_run_dea(zero, 20);
+  int code = supply_run_dea(supply_zero, 20);
   assert_true(code == 6 && !supply_said_zero());
   supply_host = "127.0.0.1";
   kill(first, SIGINT);
   (void)supply_wait(first, 20);
   supply_protocol(&s, 5, SUPPLY_MEASURES);
   // it measured 0 V, which the second name had commanded, where it had set another voltage
-  static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
-  assert_int_equal(supply_run_dea(zero, 20), 6);
+  assert_int_equal(supply_run_dea(supply_zero, 20), 6);
   assert_contains(command_out, "it had measured another voltage than was set");
-  assert_int_equal(supply_run_dea(checked, 20), 0);
-  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  supply_check_zero(&s, supply_checked);
   supply_stop(&s);
 }
 
@@ -99,10 +72,7 @@ TEST(test_interrupted)
 {
   static struct supply s;
   s = (struct supply){0};
-  supply_start(&s);
-  supply_protocol(&s, 20, SUPPLY_MEASURES);
-  pid_t child = supply_arm("i.h5");
-  assert_true(supply_reaches(&s, 1000, 10));
+  pid_t child = supply_playing(&s, 1000);
   kill(child, SIGINT);
   assert_int_equal(supply_wait(child, 10), 130);
   assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
@@ -114,12 +84,9 @@ TEST(test_stopped)
 {
   static struct supply s;
   s = (struct supply){0};
-  supply_start(&s);
-  supply_protocol(&s, 20, SUPPLY_MEASURES);
-  pid_t child = supply_arm("s.h5");
-  assert_true(supply_reaches(&s, 1000, 10));
+  pid_t child = supply_playing(&s, 1000);
   kill(child, SIGSTOP);
-  double took_s = comes_down(&s, 10);
+  double took_s = supply_comes_down(&s, supply_zero_V, 10);
   print_message("stopped: at 0 V after %.3f s\n", took_s);
   assert_true(isfinite(took_s));
   (void)supply_highest(&s);
@@ -136,13 +103,10 @@ TEST(test_stall_is_no_jump)
 {
   static struct supply s;
   s = (struct supply){0};
-  supply_start(&s);
   const char *usual = supply_safety;
   supply_safety = ", guard_time: 20 s";
-  supply_protocol(&s, 20, SUPPLY_MEASURES);
+  pid_t child = supply_playing(&s, 1000);
   supply_safety = usual;
-  pid_t child = supply_arm("stall.h5");
-  assert_true(supply_reaches(&s, 1000, 10));
   kill(child, SIGSTOP);
   dea_clock_wait(2.25);
   double held_V = supply_volts(&s), last_V = held_V, fall_V = 0;
@@ -172,10 +136,7 @@ TEST(test_guard_that_is_gone)
   static struct supply s;
   for (size_t i = 0; i < 2; i++) {
     s = (struct supply){0};
-    supply_start(&s);
-    supply_protocol(&s, 20, SUPPLY_MEASURES);
-    pid_t child = supply_arm("gone.h5");
-    assert_true(supply_reaches(&s, 1000, 10));
+    pid_t child = supply_playing(&s, 1000);
     supply_signal_guard(child, signals[i]);
     assert_int_equal(supply_wait(child, 15), 6);
     assert_contains(command_err, "the guard of the output was killed, or is stopped");
@@ -201,10 +162,10 @@ TEST(test_watchdog_of_the_supply)
   pid_t child = supply_arm("dead.h5");
   assert_true(supply_reaches(&s, 1000, 10));
   kill(child, SIGSTOP); // it must not notice
-  supply_kill_guard(child);
+  supply_signal_guard(child, SIGKILL);
   kill(child, SIGKILL);
   assert_int_equal(supply_wait(child, 5), -SIGKILL);
-  double took_s = comes_down(&s, 10);
+  double took_s = supply_comes_down(&s, supply_zero_V, 10);
   print_message("watchdog: at 0 V after %.3f s\n", took_s);
   assert_true(isfinite(took_s));
   // nobody has read that back
@@ -220,10 +181,7 @@ TEST(test_deaf_for_a_while)
   static const struct supply_wrong deaf = {.deaf = true}, good = {0};
   static struct supply s;
   s = (struct supply){0};
-  supply_start(&s);
-  supply_protocol(&s, 20, SUPPLY_MEASURES);
-  pid_t child = supply_arm("deaf.h5");
-  assert_true(supply_reaches(&s, 1500, 10));
+  pid_t child = supply_playing(&s, 1500);
   supply_go_wrong(&s, &deaf);
   double deaf_s = dea_clock_s();
   int code = supply_wait(child, 20);
@@ -232,7 +190,7 @@ TEST(test_deaf_for_a_while)
   dea_clock_wait(deaf_s + 8 - dea_clock_s());
   assert_true(supply_volts(&s) > 1000);
   supply_go_wrong(&s, &good);
-  double took_s = comes_down(&s, 20);
+  double took_s = supply_comes_down(&s, supply_zero_V, 20);
   print_message("at 0 V %.2f s after it obeys again\n", took_s);
   assert_true(isfinite(took_s));
   for (double until_s = dea_clock_s() + 10; strstr(command_err, "the guard of p.yaml") == NULL ||
@@ -243,7 +201,7 @@ TEST(test_deaf_for_a_while)
   }
   assert_int_equal(supply_wait(supply_arm("next.h5"), 30), 6);
   assert_contains(command_err, "did not end at 0 V as far as is known");
-  supply_end_guards(0);
+  supply_end_guards();
   supply_stop(&s);
 }
 
@@ -265,9 +223,7 @@ TEST(test_neighbour)
     neighbour = (struct supply){.serial = 2};
     supply_start(&s);
     supply_protocol(&s, 20, SUPPLY_MEASURES);
-    static const char *const arm[] = {"drive", "p.yaml", "--arm", "--checked",
-                                      "-f",    "-o",     "n.h5",  NULL};
-    pid_t child = supply_begin(arm);
+    pid_t child = supply_begin("drive p.yaml --arm --checked -f -o n.h5");
     assert_true(supply_reaches(&s, 1000, 10));
     assert_int_equal(killed ? kill(child, SIGSTOP) : 0, 0);
     swap(&s, &neighbour);
@@ -276,17 +232,15 @@ TEST(test_neighbour)
     print_message("%s: exit code %d, %.0f V\n", killed ? "killed" : "left", code, s.volts);
     assert_int_equal(code, killed ? -SIGKILL : 6);
     assert_false(supply_said_zero());
-    code = supply_run_dea(zero, 20);
+    code = supply_run_dea(supply_zero, 20);
     assert_true(code == 6 && !supply_said_zero() && s.volts > 500 && neighbour.commands > 0);
     assert_contains(command_err, "which the one that is meant would not");
     swap(&neighbour, &s); // and back
     if (killed) {
-      assert_true(isfinite(comes_down(&s, 20))); // by the guard, which has gone on
+      assert_true(
+          isfinite(supply_comes_down(&s, supply_zero_V, 20))); // by the guard, which has gone on
     }
-    code = supply_run_dea(zero, 20);
-    if (!(code == 0 && supply_said_zero() && supply_volts(&s) <= supply_zero_V)) {
-      fail_msg("%d, %g V: %s%s", code, supply_volts(&s), command_out, command_err);
-    }
+    supply_check_zero(&s, supply_zero);
     supply_stop(&s);
   }
 }
@@ -297,12 +251,8 @@ TEST(test_zero_while_it_plays)
 {
   static struct supply s;
   s = (struct supply){0};
-  supply_start(&s);
-  supply_protocol(&s, 20, SUPPLY_MEASURES);
-  pid_t child = supply_arm("z.h5");
-  assert_true(supply_reaches(&s, 1000, 10));
-  int code = supply_run_dea(zero, 30);
-  assert_true(code == 0 && supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  pid_t child = supply_playing(&s, 1000);
+  supply_check_zero(&s, supply_zero);
   (void)supply_highest(&s);
   assert_int_equal(supply_wait(child, 5), 130);
   dea_clock_wait(1);

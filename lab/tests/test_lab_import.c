@@ -31,11 +31,10 @@ TEST(test_dialects)
   for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
     char name[32];
     snprintf(name, sizeof name, "dialect-%zu.csv", i);
-    struct dea_table *table = read_text(name, texts[i]);
-    assert_column(table, "Time", "s", t3, 3);
-    assert_column(table, "Voltage", "kV", v3, 3);
+    read_text(name, texts[i]);
+    assert_column("Time", "s", t3, 3);
+    assert_column("Voltage", "kV", v3, 3);
     assert_int_equal(table->column_count, 2);
-    dea_table_destroy(ctx, table);
   }
 }
 
@@ -44,12 +43,11 @@ TEST(test_encodings)
   static const unsigned char latin[] = "Zeit (s);Strom (\xb5"
                                        "A)\n0;1,5\n1;2,5\n";
   static const double current[] = {1.5, 2.5};
-  struct dea_table *table = read_bytes("latin.csv", latin, sizeof latin - 1);
-  assert_column(table, "Strom",
+  read_bytes("latin.csv", latin, sizeof latin - 1);
+  assert_column("Strom",
                 "\xc2\xb5"
                 "A",
                 current, 2);
-  dea_table_destroy(ctx, table);
   for (int big = 0; big < 2; big++) {
     unsigned char wide[2 * sizeof latin];
     wide[big] = 0xff;
@@ -58,12 +56,11 @@ TEST(test_encodings)
       wide[2 + 2 * i + (size_t)big] = latin[i];
       wide[3 + 2 * i - (size_t)(2 * big) + (size_t)big] = 0;
     }
-    table = read_bytes("wide.csv", wide, 2 * sizeof latin);
-    assert_column(table, "Strom",
+    read_bytes("wide.csv", wide, 2 * sizeof latin);
+    assert_column("Strom",
                   "\xc2\xb5"
                   "A",
                   current, 2);
-    dea_table_destroy(ctx, table);
   }
 }
 
@@ -71,31 +68,27 @@ TEST(test_encodings)
 TEST(test_carriage_returns)
 {
   static const double t[] = {0, 0.5, 1}, v[] = {1.5, 2.5, 3};
-  struct dea_table *table = read_text("cr.csv", "Time (s),V (kV)\r0,1.5\r0.5,2.5\r1.0,3\r");
-  assert_column(table, "Time", "s", t, 3);
-  assert_column(table, "V", "kV", v, 3);
-  dea_table_destroy(ctx, table);
+  read_text("cr.csv", "Time (s),V (kV)\r0,1.5\r0.5,2.5\r1.0,3\r");
+  assert_column("Time", "s", t, 3);
+  assert_column("V", "kV", v, 3);
 }
 
 /* Times with a zone: those of winter and summer differ in name only. */
 TEST(test_zones)
 {
   static const double t[] = {0, 1, 2.5, 4};
-  struct dea_table *table =
-      read_text("zone.csv", "Timestamp,V (kV)\n2026-03-29T01:59:59+01:00,1\n"
-                            "2026-03-29T03:00:00+02:00,2\n2026-03-28 20:30:01.5-0430,3\n"
-                            "2026-03-29 01:00:03Z,4\n");
-  assert_column(table, "Timestamp", "s", t, 4);
-  dea_table_destroy(ctx, table);
+  read_text("zone.csv", "Timestamp,V (kV)\n2026-03-29T01:59:59+01:00,1\n"
+                        "2026-03-29T03:00:00+02:00,2\n2026-03-28 20:30:01.5-0430,3\n"
+                        "2026-03-29 01:00:03Z,4\n");
+  assert_column("Timestamp", "s", t, 4);
 }
 
 TEST(test_missing_values)
 {
   static const double v[] = {1, NAN, NAN, NAN, NAN, NAN, 2};
-  struct dea_table *table = read_text(
-      "missing.csv", "t,V (V),x\n0,1,1\n1,,1\n2,NaN,1\n3,-nan,1\n4,OL,1\n5,1.#QNAN,1\n6,2,1\n");
-  assert_column(table, "V", "V", v, 7);
-  dea_table_destroy(ctx, table);
+  read_text("missing.csv",
+            "t,V (V),x\n0,1,1\n1,,1\n2,NaN,1\n3,-nan,1\n4,OL,1\n5,1.#QNAN,1\n6,2,1\n");
+  assert_column("V", "V", v, 7);
 }
 
 /* Rows of missing values above the first number, and below the last one, are rows: without a column
@@ -108,20 +101,17 @@ TEST(test_rows_of_missing_values)
   for (int i = 0; i < ROWS; i++) {
     n += (size_t)sprintf(text + n, "%d,ok,%d\n", i % 7, i % 5);
   }
-  struct dea_table *table = read_text("head.csv", text);
-  const struct dea_table_column *v = column_of(table, "V");
+  read_text("head.csv", text);
+  const struct dea_table_column *v = column_of("V");
   assert_int_equal(v->count, ROWS + 2);
   assert_true(isnan(v->values[0]) && isnan(v->values[1]) && v->values[3] == 1);
   assert_string_equal(v->unit, "kV");
-  dea_table_destroy(ctx, table);
   static const double w[] = {NAN, 1, 2, NAN, NAN}, t[] = {0, 1};
-  table = read_text("both.csv", "V (kV),W (kV)\nNaN,-nan(ind)\n1,1\n2,2\nnan,nan\nnan,nan\n");
-  assert_column(table, "W", "kV", w, 5);
-  dea_table_destroy(ctx, table);
-  table = read_text("dashes.csv", "Time (s),note,V (kV)\n-,-,-\n0,ok,0\n1,ok,1\n"); // no units
-  assert_column(table, "Time", "s", t, 2);
-  assert_column(table, "V", "kV", t, 2);
-  dea_table_destroy(ctx, table);
+  read_text("both.csv", "V (kV),W (kV)\nNaN,-nan(ind)\n1,1\n2,2\nnan,nan\nnan,nan\n");
+  assert_column("W", "kV", w, 5);
+  read_text("dashes.csv", "Time (s),note,V (kV)\n-,-,-\n0,ok,0\n1,ok,1\n"); // no units
+  assert_column("Time", "s", t, 2);
+  assert_column("V", "kV", t, 2);
 }
 
 /* To the last bit: against strtod in the C locale. */
@@ -148,18 +138,16 @@ TEST(test_numbers_exact)
     strcat(strcat(text, numbers[i]), "\n");
     values[i] = strtod(numbers[i], NULL);
   }
-  struct dea_table *table = read_text("exact.csv", text);
-  assert_column(table, "x", "", values, COUNT);
-  dea_table_destroy(ctx, table);
+  read_text("exact.csv", text);
+  assert_column("x", "", values, COUNT);
 }
 
 TEST(test_headers)
 {
-  struct dea_table *table = read_text("no.csv", "0,1\n1,2\n");
+  read_text("no.csv", "0,1\n1,2\n");
   assert_string_equal(table->columns[0].name, "column 1");
-  dea_table_destroy(ctx, table);
-  table = read_text("odd.csv", "Dev1/ai0,Force (filtered),channel_A,laser_in,I_A,T (\xc2\xb0"
-                               "C)\n1,2,3,4,5,6\n7,8,9,1,2,3\n");
+  read_text("odd.csv", "Dev1/ai0,Force (filtered),channel_A,laser_in,I_A,T (\xc2\xb0"
+                       "C)\n1,2,3,4,5,6\n7,8,9,1,2,3\n");
   static const char *const names[] = {"Dev1/ai0", "Force (filtered)", "channel_A", "laser_in", "I",
                                       "T"};
   static const char *const units[] = {"", "", "", "", "A", "\302\260C"};
@@ -167,11 +155,9 @@ TEST(test_headers)
     assert_string_equal(table->columns[i].name, names[i]);
     assert_string_equal(table->columns[i].unit, units[i]);
   }
-  dea_table_destroy(ctx, table);
-  table = read_text("one.csv", "Voltage\n1,5\n2,5\n"); // one column with a decimal comma
+  read_text("one.csv", "Voltage\n1,5\n2,5\n"); // one column with a decimal comma
   static const double v[] = {1.5, 2.5};
-  assert_column(table, "Voltage", "", v, 2);
-  dea_table_destroy(ctx, table);
+  assert_column("Voltage", "", v, 2);
 }
 
 /* Titles with line breaks in quotes (Alt+Enter in Excel) are none, rather than those of other
@@ -179,31 +165,25 @@ TEST(test_headers)
 TEST(test_titles_of_two_lines)
 {
   static const double t[] = {0.5, 1.5};
-  struct dea_table *table =
-      read_text("quoted.csv", "\"Time\n(s)\",\"Voltage\n(kV)\"\n0.5,1\n1.5,2\n");
-  assert_column(table, "column 1", "", t, 2);
+  read_text("quoted.csv", "\"Time\n(s)\",\"Voltage\n(kV)\"\n0.5,1\n1.5,2\n");
+  assert_column("column 1", "", t, 2);
   assert_true(is_said(DEA_NOTE, "name no 2 columns"));
-  dea_table_destroy(ctx, table);
 }
 
 TEST(test_text_columns_and_rates)
 {
   static const double v[] = {1, 2};
-  struct dea_table *table = read_text(
-      "text.csv", "Sample rate: 2 kHz\nDate;V (V)\n2023-05-01 10:00;1\n2023-05-01 10:01;2\n");
-  assert_column(table, "V", "V", v, 2);
-  const struct dea_table_column *rate = column_of(table, "Sample rate");
+  read_text("text.csv", "Sample rate: 2 kHz\nDate;V (V)\n2023-05-01 10:00;1\n2023-05-01 10:01;2\n");
+  assert_column("V", "V", v, 2);
+  const struct dea_table_column *rate = column_of("Sample rate");
   assert_int_equal(rate->count, 1);
   assert_true(rate->values[0] == 2);
   assert_string_equal(rate->unit, "kHz");
   assert_true(is_said(DEA_NOTE, "'Date' holds text ('2023-05-01 10:00')"));
-  dea_table_destroy(ctx, table);
-  table = read_text("kV.csv", "t (s),V\n0,1.5 kV\n1,2.5 kV\n"); // no thousands
+  read_text("kV.csv", "t (s),V\n0,1.5 kV\n1,2.5 kV\n"); // no thousands
   assert_true(is_said(DEA_NOTE, "'V' holds text ('1.5 kV')"));
-  dea_table_destroy(ctx, table);
-  table = read_text("odd.csv", "t (s),V\n0,1.5\n1,ERR\n2,ERR\n"); // numbers are lost
+  read_text("odd.csv", "t (s),V\n0,1.5\n1,ERR\n2,ERR\n"); // numbers are lost
   assert_true(is_said(DEA_WARNING, "'V' holds text ('1.5')"));
-  dea_table_destroy(ctx, table);
 }
 
 TEST(test_refused)
@@ -221,10 +201,9 @@ TEST(test_refused)
   assert_all_refused("bad.csv", cases, sizeof cases / sizeof cases[0]);
   assert_refused("bad.csv", "a\0b", 3, 0, "no format that is known");
   write_bytes("empty.csv", "", 0);
-  struct dea_table *table;
-  assert_int_equal(dea_table_read(ctx, in_folder("empty.csv"), NULL, &table), DEA_E_IO);
-  assert_int_equal(dea_table_read(ctx, in_folder("none.csv"), NULL, &table), DEA_E_IO);
-  assert_int_equal(dea_table_read(ctx, folder, NULL, &table), DEA_E_IO);
+  assert_int_equal(read_table(in_folder("empty.csv")), DEA_E_IO);
+  assert_int_equal(read_table(in_folder("none.csv")), DEA_E_IO);
+  assert_int_equal(read_table(folder), DEA_E_IO);
   assert_int_equal(dea_table_read(ctx, in_folder("bad.csv"), "cvs", &table), DEA_E_USAGE);
   assert_non_null(strstr(dea_context_message(ctx), "did you mean 'csv'"));
 }
@@ -244,10 +223,9 @@ TEST(test_late_errors)
   assert_refused("late.csv", text, n, 2102, "'a1' is not a number");
   assert_true(is_said(DEA_ERROR, "1 field where 2 are due"));
   // a file that was cut off in its last line
-  struct dea_table *table = read_text("cut.csv", "t,V,W\n0,1,2\n1,2,3\n2,3");
+  read_text("cut.csv", "t,V,W\n0,1,2\n1,2,3\n2,3");
   assert_int_equal(table->columns[0].count, 2);
   assert_true(is_said(DEA_WARNING, "cut off"));
-  dea_table_destroy(ctx, table);
 }
 
 static void read_once(struct dea_context *own)
@@ -262,4 +240,4 @@ TEST(test_memory)
   assert_true(failing_each(read_once) > 10);
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, import_tear_down)

@@ -8,16 +8,12 @@
 /* The recording of a file, guessed; NULL: it is refused. */
 static struct dea_recording *record(const char *name)
 {
-  struct dea_table *table = NULL;
   struct dea_recording *recording = NULL;
   char file[400];
   snprintf(file, sizeof file, CASES "%s", name);
-  dea_finding_clear(ctx);
-  dea_context_clear(ctx);
-  if (dea_table_read(ctx, file, NULL, &table) == DEA_OK) {
+  if (read_table(file) == DEA_OK) {
     (void)dea_table_record(ctx, table, NULL, &recording);
   }
-  dea_table_destroy(ctx, table);
   return recording;
 }
 
@@ -128,13 +124,12 @@ TEST(test_thousands)
 /* A column that a mapping names is never left out in silence. */
 TEST(test_named_column_of_text)
 {
-  struct dea_table *table = read_text("t.csv", "t (s),V (kV),F (N)\n0,1,1\n1,sat,1\n2,sat,1\n");
+  read_text("t.csv", "t (s),V (kV),F (N)\n0,1,1\n1,sat,1\n2,sat,1\n");
   struct dea_mapping *mapping = map_text("dea-import: 1\ncolumns:\n  - {column: V, as: voltage}\n");
   struct dea_recording *recording;
   assert_int_equal(dea_table_record(ctx, table, mapping, &recording), DEA_E_DESIGN);
   assert_true(is_said(DEA_ERROR, "'sat' of the column 'V' is not a number"));
   dea_mapping_destroy(ctx, mapping);
-  dea_table_destroy(ctx, table);
 }
 
 /* Letters of Shift-JIS hold bytes of ASCII that are no words; full-width units are units. */
@@ -175,4 +170,4 @@ TEST(test_encodings)
                "letters in an encoding that is not known: save as UTF-8");
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, import_tear_down)

@@ -68,13 +68,11 @@ TEST(test_trios)
               "Gap", "Axial force");
   assert_pull(record_file("old.json", "{\"Results\": {" TRIOS_HEADERS TRIOS_ROWS "}}", map), "Gap",
               "Axial force");
-  struct dea_table *table =
-      read_text("gap.json", "{\"Results\": {" TRIOS_HEADERS
-                            "\"Rows\": [{\"Time_s\": 1}, {\"Gap_mm\": null}]}}");
+  read_text("gap.json",
+            "{\"Results\": {" TRIOS_HEADERS "\"Rows\": [{\"Time_s\": 1}, {\"Gap_mm\": null}]}}");
   assert_int_equal(table->column_count, 3);
   assert_true(table->columns[0].values[0] == 1 && isnan(table->columns[0].values[1]));
   assert_true(isnan(table->columns[1].values[1]) && isnan(table->columns[2].values[0]));
-  dea_table_destroy(ctx, table);
 }
 
 TEST(test_trios_that_is_wrong)
@@ -90,18 +88,14 @@ TEST(test_trios_that_is_wrong)
       {"{\"Results\": {\"ColumnHeaders\": {}, \"Rows\": []}}", "holds no column of numbers"},
   };
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-    struct dea_table *table;
     size_t count;
-    dea_finding_clear(ctx);
     write_bytes("wrong.json", wrong[i].text, strlen(wrong[i].text));
-    assert_int_equal(dea_table_read(ctx, in_folder("wrong.json"), NULL, &table), DEA_E_IO);
+    assert_int_equal(read_table(in_folder("wrong.json")), DEA_E_IO);
     assert_non_null(strstr(dea_context_message(ctx), wrong[i].says));
     const struct dea_finding *findings = dea_finding_get(ctx, &count);
     assert_true(count == (i == 3));
     assert_true(count == 0 || findings[0].location.line == 2);
-    dea_context_clear(ctx);
   }
-  dea_finding_clear(ctx);
 }
 
 /* Decimal commas, semicolons, Latin-1, kN. */
@@ -137,13 +131,11 @@ TEST(test_gb18030)
               "\xe4\xbd\x8d\xe7\xa7\xbb", "\xe5\x8a\x9b");
   // a sign of Latin-1 is not half of a letter, and UTF-8 stays what it is
   static const double values[] = {1, 2};
-  struct dea_table *table = read_text("latin.csv", "\xc4nderung (\xb5m);Gr\xf6\xdf"
-                                                   "e (mN)\n1;1\n2;2\n");
-  assert_column(table, "\xc3\x84nderung", "\xc2\xb5m", values, 2);
-  dea_table_destroy(ctx, table);
-  table = read_text("utf8.csv", "\xe6\x97\xb6\xe9\x97\xb4 (s),\xe5\x8a\x9b (N)\n1,1\n2,2\n");
-  assert_column(table, "\xe6\x97\xb6\xe9\x97\xb4", "s", values, 2);
-  dea_table_destroy(ctx, table);
+  read_text("latin.csv", "\xc4nderung (\xb5m);Gr\xf6\xdf"
+                         "e (mN)\n1;1\n2;2\n");
+  assert_column("\xc3\x84nderung", "\xc2\xb5m", values, 2);
+  read_text("utf8.csv", "\xe6\x97\xb6\xe9\x97\xb4 (s),\xe5\x8a\x9b (N)\n1,1\n2,2\n");
+  assert_column("\xe6\x97\xb6\xe9\x97\xb4", "s", values, 2);
 }
 
 /* A clock beside the force, once with a date and across midnight, once without. */
@@ -176,18 +168,15 @@ TEST(test_times_as_text)
 TEST(test_other_times)
 {
   static const double t[] = {0, 0.5, 1}, f[] = {1, 2, 3};
-  struct dea_table *table = read_text("a.csv", "Clock,F (N)\n10:00:00,1\n10:00:00,2\n10:00:01,3\n");
+  read_text("a.csv", "Clock,F (N)\n10:00:00,1\n10:00:00,2\n10:00:01,3\n");
   assert_int_equal(table->column_count, 1);
-  assert_column(table, "F", "N", f, 3);
+  assert_column("F", "N", f, 3);
   assert_true(is_said(DEA_WARNING, "the times in 'Clock' repeat or fall"));
-  dea_table_destroy(ctx, table);
-  table = read_text("b.csv", "Clock,Time (s),F (N)\n10:00:00,0,1\n10:00:00,0.5,2\n10:00:01,1,3\n");
+  read_text("b.csv", "Clock,Time (s),F (N)\n10:00:00,0,1\n10:00:00,0.5,2\n10:00:01,1,3\n");
   assert_int_equal(table->column_count, 2);
-  assert_column(table, "Time", "s", t, 3);
-  dea_table_destroy(ctx, table);
-  table = read_text("c.csv", "Clock,F (N)\n03/02/2026 10:00:00,1\n03/02/2026 10:00:01,2\n");
+  assert_column("Time", "s", t, 3);
+  read_text("c.csv", "Clock,F (N)\n03/02/2026 10:00:00,1\n03/02/2026 10:00:01,2\n");
   assert_int_equal(table->column_count, 1);
-  dea_table_destroy(ctx, table);
   static const struct refused wrong[] = {
       {"Clock,F (N)\n10:00:00,1\n2026-03-02 10:00:01,2\n", 3, "is no time as those above it are"},
       {"Clock,F (N)\n10:00:00,1\n10:00:61,2\n", 3, "'10:00:61' is no time"},
@@ -217,4 +206,4 @@ TEST(test_days)
   }
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, import_tear_down)

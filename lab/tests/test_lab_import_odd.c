@@ -7,14 +7,11 @@
 static dea_status record(const char *name, const char *text, const char *said,
                          struct dea_recording **out)
 {
-  struct dea_table *table = NULL;
   size_t count;
   *out = NULL;
   write_bytes(name, text, strlen(text));
-  dea_finding_clear(ctx);
-  dea_status status = dea_table_read(ctx, in_folder(name), NULL, &table);
+  dea_status status = read_table(in_folder(name));
   status = status == DEA_OK ? dea_table_record(ctx, table, NULL, out) : status;
-  dea_table_destroy(ctx, table);
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   bool found = said == NULL;
   for (size_t i = 0; i < count && !found; i++) {
@@ -39,12 +36,10 @@ TEST(test_thousands)
   refused("b.csv", "Time (s);Voltage (V)\n0;900\n1;1.000\n2;-1.100\n", "between thousands");
   refused("c.csv", "Time (s),Voltage (V)\n0,\"1,000\"\n1,\"2,000\"\n", "between thousands");
   static const double t[] = {0, 0.5, 1}, v[] = {2, 1.125, 2.25}, w[] = {1.5, 1.125, 2.125};
-  struct dea_table *table =
-      read_text("d.csv", "Time (s);V (V);W (V)\n0;2;1,500\n0,5;1,125;1,125\n1;2,25;2,125\n");
-  assert_column(table, "Time", "s", t, 3);
-  assert_column(table, "V", "V", v, 3);
-  assert_column(table, "W", "V", w, 3);
-  dea_table_destroy(ctx, table);
+  read_text("d.csv", "Time (s);V (V);W (V)\n0;2;1,500\n0,5;1,125;1,125\n1;2,25;2,125\n");
+  assert_column("Time", "s", t, 3);
+  assert_column("V", "V", v, 3);
+  assert_column("W", "V", w, 3);
 }
 
 TEST(test_times_of_unknown_unit)
@@ -82,9 +77,8 @@ TEST(test_units_in_titles)
     dea_recording_destroy(ctx, recording);
   }
   static const double v[] = {1, 2};
-  struct dea_table *table = read_text("kv.csv", "Time (s),Voltage (KV)\n0,1\n1,2\n");
-  assert_column(table, "Voltage", "KV", v, 2);
-  dea_table_destroy(ctx, table);
+  read_text("kv.csv", "Time (s),Voltage (KV)\n0,1\n1,2\n");
+  assert_column("Voltage", "KV", v, 2);
 }
 
 /* Units that are not known, and columns with a unit that hold no numbers. */
@@ -124,10 +118,8 @@ TEST(test_odd_units)
 TEST(test_overflow)
 {
   static const double v[] = {1, NAN, NAN, NAN, 2, 1e37, 1e39};
-  struct dea_table *table = read_text(
-      "over.csv", "t (s),V (V)\n0,1\n1,9.9E+37\n2,9.91E37\n3,-9.9e37\n4,2\n5,1e37\n6,1e39\n");
-  assert_column(table, "V", "V", v, 7);
-  dea_table_destroy(ctx, table);
+  read_text("over.csv", "t (s),V (V)\n0,1\n1,9.9E+37\n2,9.91E37\n3,-9.9e37\n4,2\n5,1e37\n6,1e39\n");
+  assert_column("V", "V", v, 7);
 }
 
 /* Rows above a repeated head, beside a column of dates. */
@@ -141,10 +133,8 @@ TEST(test_dates_and_two_tables)
           "State,Time (s),V (kV)\nok,0,1.5\nok,1,2.5\nState,Time (s),V (kV)\nok,2,3.5\n",
           "split the file");
   static const double v[] = {3.5, 4.5};
-  struct dea_table *table = read_text(
-      "head.csv", "Scope;7;12\nDate;Time (s);V (kV)\n22.11.2026;2;3,5\n23.11.2026;3;4,5\n");
-  assert_column(table, "V", "kV", v, 2);
-  dea_table_destroy(ctx, table);
+  read_text("head.csv", "Scope;7;12\nDate;Time (s);V (kV)\n22.11.2026;2;3,5\n23.11.2026;3;4,5\n");
+  assert_column("V", "kV", v, 2);
 }
 
 TEST(test_lvm_segments_of_other_channels)
@@ -176,4 +166,4 @@ TEST(test_times_of_their_struct)
   dea_recording_destroy(ctx, r);
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, import_tear_down)

@@ -40,31 +40,25 @@ static void assert_both(struct dea_recording *recording, const char *first, cons
 /* TDS: a file a channel, with its header beside the first samples. */
 TEST(test_beside)
 {
-  struct dea_table *table = read_text("F0000CH1.CSV", TDS("CH1", "0.00", "1.50", "3.00", "1.50"));
-  struct dea_table *other = read_text("F0000CH2.CSV", TDS("CH2", "0.01", "0.02", "0.03", "0.02"));
+  read_text("F0000CH1.CSV", TDS("CH1", "0.00", "1.50", "3.00", "1.50"));
   assert_string_equal(table->format, "tektronix");
-  assert_column(table, "Time", "s", times_s, 4);
-  assert_column(table, "CH1", "V", first_V, 4);
+  assert_column("Time", "s", times_s, 4);
+  assert_column("CH1", "V", first_V, 4);
   assert_non_null(strstr(table->note, "; Sample Interval: 1.000000e-03;"));
   struct dea_mapping *mapping = map_text(MONITORS("CH1", "CH2"));
   struct dea_recording *recording;
-  assert_int_equal(dea_table_join(ctx, table, other), DEA_OK);
-  struct dea_table *copy = read_text("copy.CSV", TDS("CH1", "0.00", "1.50", "3.00", "1.50"));
-  assert_int_equal(dea_table_join(ctx, table, copy), DEA_E_IO);
+  assert_int_equal(join_text("F0000CH2.CSV", TDS("CH2", "0.01", "0.02", "0.03", "0.02")), DEA_OK);
+  assert_int_equal(join_text("copy.CSV", TDS("CH1", "0.00", "1.50", "3.00", "1.50")), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "already, value by value"));
-  dea_table_destroy(ctx, copy);
   assert_int_equal(dea_table_record(ctx, table, mapping, &recording), DEA_OK);
   assert_both(recording, "CH1", "CH2");
   dea_mapping_destroy(ctx, mapping);
-  dea_table_destroy(ctx, table);
-  dea_table_destroy(ctx, other);
   // TDS3000: with quotes, a word between, no comma at the end; a header longer than the record
-  table = read_text("tek.csv", "\"Record Length\",4,\"Points\",-1E-3,0\n"
-                               "\"Sample Interval\",1.0E-3,\"s\",0,1.5\n"
-                               "\"Vertical Units\",\"V\",,1E-3,3\n\"Source\",\"CH3\",,2E-3,1.5\n");
-  assert_column(table, "Time", "s", times_s, 4);
-  assert_column(table, "CH3", "V", first_V, 4);
-  dea_table_destroy(ctx, table);
+  read_text("tek.csv", "\"Record Length\",4,\"Points\",-1E-3,0\n"
+                       "\"Sample Interval\",1.0E-3,\"s\",0,1.5\n"
+                       "\"Vertical Units\",\"V\",,1E-3,3\n\"Source\",\"CH3\",,2E-3,1.5\n");
+  assert_column("Time", "s", times_s, 4);
+  assert_column("CH3", "V", first_V, 4);
   const char *odd = "Record Length,4,,-0.001,0,\n,,,oops,1,\n,,,0.001,2,\n";
   assert_refused("odd.csv", odd, strlen(odd), 2, "'oops' is not a number");
 }
@@ -112,10 +106,9 @@ TEST(test_start_and_increment)
   assert_close(sparse->channels[0].interval_s, 2e-8, 1e-6, 0);
   dea_recording_destroy(ctx, sparse);
   // words that are no such thing
-  struct dea_table *table = read_text("list.csv", "Sample,Start,Increment\n1,2,3\n2,4,6\n");
+  read_text("list.csv", "Sample,Start,Increment\n1,2,3\n2,4,6\n");
   assert_string_equal(table->format, "csv");
   assert_int_equal(table->column_count, 3);
-  dea_table_destroy(ctx, table);
 }
 
 /* With lines above the numbers, as other text. */
@@ -129,31 +122,26 @@ TEST(test_lines_above)
                           "1e-3,3,0.03\r\n2e-3,1.5,0.02\r\n",
                           MONITORS("CH1", "CH2")),
               "CH1", "CH2");
-  struct dea_table *table = read_text("units.csv", "Vertical Units,V,A\nLabel,,\nTIME,CH1,CH2\n"
-                                                   "-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n"
-                                                   "2e-3,1.5,0.02\n");
-  assert_column(table, "TIME", "", times_s, 4);
-  assert_column(table, "CH1", "V", first_V, 4);
-  assert_column(table, "CH2", "A", second_V, 4);
-  dea_table_destroy(ctx, table);
-  table = read_text("words.csv", "Second,Volt,Ampere\n-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n"
-                                 "2e-3,1.5,0.02\n");
-  assert_column(table, "Second", "Second", times_s, 4);
-  assert_column(table, "Ampere", "Ampere", second_V, 4);
-  dea_table_destroy(ctx, table);
+  read_text("units.csv", "Vertical Units,V,A\nLabel,,\nTIME,CH1,CH2\n"
+                         "-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n"
+                         "2e-3,1.5,0.02\n");
+  assert_column("TIME", "", times_s, 4);
+  assert_column("CH1", "V", first_V, 4);
+  assert_column("CH2", "A", second_V, 4);
+  read_text("words.csv", "Second,Volt,Ampere\n-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n"
+                         "2e-3,1.5,0.02\n");
+  assert_column("Second", "Second", times_s, 4);
+  assert_column("Ampere", "Ampere", second_V, 4);
   // the unit of a product is none that is known; the others stay
-  table = read_text("product.csv", "Vertical Units,V,VV\nLabel,,\nTIME,CH1,MATH\n"
-                                   "-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n2e-3,1.5,0.02\n");
-  assert_column(table, "CH1", "V", first_V, 4);
-  assert_column(table, "MATH", "", second_V, 4);
-  dea_table_destroy(ctx, table);
+  read_text("product.csv", "Vertical Units,V,VV\nLabel,,\nTIME,CH1,MATH\n"
+                           "-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n2e-3,1.5,0.02\n");
+  assert_column("CH1", "V", first_V, 4);
+  assert_column("MATH", "", second_V, 4);
   // a title's own unit counts, and "In" is a name
-  table =
-      read_text("own.csv", "Vertical Units,V,A\nt (s),CH1 (mV),In mV\n-1e-3,0,0.01\n0,1.5,0.02\n"
-                           "1e-3,3,0.03\n2e-3,1.5,0.02\n");
-  assert_column(table, "CH1", "mV", first_V, 4);
-  assert_column(table, "In", "mV", second_V, 4);
-  dea_table_destroy(ctx, table);
+  read_text("own.csv", "Vertical Units,V,A\nt (s),CH1 (mV),In mV\n-1e-3,0,0.01\n0,1.5,0.02\n"
+                       "1e-3,3,0.03\n2e-3,1.5,0.02\n");
+  assert_column("CH1", "mV", first_V, 4);
+  assert_column("In", "mV", second_V, 4);
   static const struct {
     const char *name, *text, *columns[2];
   } files[] = {
@@ -184,4 +172,4 @@ TEST(test_lines_above)
   }
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, import_tear_down)

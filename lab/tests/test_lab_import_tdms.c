@@ -32,11 +32,6 @@ static void put_double(double value)
   put(bits, 8);
 }
 
-static void begin_file(void)
-{
-  length = 0;
-}
-
 /* A lead-in whose lengths end_segment fills in. */
 static void begin_segment(unsigned contents)
 {
@@ -50,6 +45,14 @@ static void begin_segment(unsigned contents)
   put(0, 8);
   put(0, 8);
   raw_at = length;
+}
+
+/* A file of one segment with so many objects. */
+static void begin_file(unsigned contents, size_t objects)
+{
+  length = 0;
+  begin_segment(METADATA | NEW_LIST | contents);
+  put(objects, 4);
 }
 
 static void begin_raw(void)
@@ -100,8 +103,7 @@ static void put_text_property(const char *name, const char *value)
 /* "/", "/'bench'" and two channels of two values. */
 static void put_bench(unsigned contents)
 {
-  begin_segment(contents);
-  put(4, 4);
+  begin_file(contents, 4);
   put_object("/", 0, NONE, 1);
   put_text_property("name", "a run");
   put_object("/'bench'", 0, NONE, 0);
@@ -117,8 +119,7 @@ TEST(test_segments)
 {
   static const double hv[] = {1.5, -2.25, 3, 4, 5, 6, 7, 8}, ai[] = {-1, 300, 7, 8};
   for (unsigned endian = 0; endian <= BIG; endian += BIG) {
-    begin_file();
-    put_bench(METADATA | NEW_LIST | RAW | endian);
+    put_bench(RAW | endian);
     put_double(1.5);
     put_double(-2.25);
     put((uint64_t)-1, 2);
@@ -142,31 +143,28 @@ TEST(test_segments)
     put_double(7);
     put_double(8);
     end_segment();
-    struct dea_table *table = read_bytes("run.tdms", bytes, length);
+    read_bytes("run.tdms", bytes, length);
     assert_string_equal(table->format, "tdms");
     assert_int_equal(table->column_count, 2);
-    assert_column(table, "HV", "kV", hv, 8);
-    assert_column(table, "Dev1/ai0", "", ai, 4);
+    assert_column("HV", "kV", hv, 8);
+    assert_column("Dev1/ai0", "", ai, 4);
     assert_true(table->columns[0].interval == 0.001 && table->columns[0].start == 0.5);
     assert_true(isnan(table->columns[1].interval));
-    dea_table_destroy(ctx, table);
   }
 }
 
 TEST(test_interleaved)
 {
   static const double hv[] = {1, 2, 3}, ai[] = {10, 20, 30};
-  begin_file();
-  put_bench(METADATA | NEW_LIST | RAW | INTERLEAVED);
+  put_bench(RAW | INTERLEAVED);
   for (int i = 1; i <= 3; i++) {
     put_double(i);
     put((uint64_t)(10 * i), 2);
   }
   end_segment();
-  struct dea_table *table = read_bytes("run.tdms", bytes, length);
-  assert_column(table, "HV", "kV", hv, 3);
-  assert_column(table, "Dev1/ai0", "", ai, 3);
-  dea_table_destroy(ctx, table);
+  read_bytes("run.tdms", bytes, length);
+  assert_column("HV", "kV", hv, 3);
+  assert_column("Dev1/ai0", "", ai, 3);
 }
 
 TEST(test_types)
@@ -190,25 +188,20 @@ TEST(test_types)
       {0x21, 1, 1, 1},
   };
   for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
-    begin_file();
-    begin_segment(METADATA | NEW_LIST | RAW | (i % 2 ? BIG : 0));
-    put(1, 4);
+    begin_file(RAW | (i % 2 ? BIG : 0), 1);
     put_object("/'g'/'it''s'", types[i].type, 1, 0);
     begin_raw();
     put(types[i].bits, types[i].size);
     end_segment();
-    struct dea_table *table = read_bytes("type.tdms", bytes, length);
-    assert_column(table, "it's", "", &types[i].value, 1);
-    dea_table_destroy(ctx, table);
+    read_bytes("type.tdms", bytes, length);
+    assert_column("it's", "", &types[i].value, 1);
   }
 }
 
 TEST(test_times_and_texts)
 {
   static const double t[] = {0, 0.25}, v[] = {5, 6};
-  begin_file();
-  begin_segment(METADATA | NEW_LIST | RAW);
-  put(3, 4);
+  begin_file(RAW, 3);
   put_object("/'g'/'when'", 0x44, 2, 0);
   put_text("/'g'/'words'"); // texts: offsets, then letters; 4 + 4 + 3 bytes
   put(28, 4);
@@ -230,20 +223,17 @@ TEST(test_times_and_texts)
   put_double(5);
   put_double(6);
   end_segment();
-  struct dea_table *table = read_bytes("time.tdms", bytes, length);
+  read_bytes("time.tdms", bytes, length);
   assert_int_equal(table->column_count, 2 + 0);
-  assert_column(table, "g/when", "s", t, 2);
-  assert_column(table, "h/V", "", v, 2);
-  dea_table_destroy(ctx, table);
+  assert_column("g/when", "s", t, 2);
+  assert_column("h/V", "", v, 2);
 }
 
 /* Two devices with times of their own: the second one began a quarter of a second later. */
 TEST(test_times_of_two_devices)
 {
   static const double t[] = {0, 0.5}, late[] = {0.25, 0.75};
-  begin_file();
-  begin_segment(METADATA | NEW_LIST | RAW);
-  put(2, 4);
+  begin_file(RAW, 2);
   put_object("/'g'/'when'", 0x44, 2, 0);
   put_object("/'h'/'when'", 0x44, 2, 0);
   begin_raw();
@@ -252,10 +242,9 @@ TEST(test_times_of_two_devices)
     put(3765000000u, 8);
   }
   end_segment();
-  struct dea_table *table = read_bytes("two.tdms", bytes, length);
-  assert_column(table, "g/when", "s", t, 2);
-  assert_column(table, "h/when", "s", late, 2);
-  dea_table_destroy(ctx, table);
+  read_bytes("two.tdms", bytes, length);
+  assert_column("g/when", "s", t, 2);
+  assert_column("h/when", "s", late, 2);
 }
 
 static void put_time_property(const char *name, uint64_t seconds, uint64_t fraction)
@@ -272,7 +261,7 @@ TEST(test_waveforms_of_two_devices)
 {
   static const double starts[] = {0.5, 3.0, 0.5};
   static const char *const names[] = {"/'a'/'V'", "/'b'/'z'", "/'c'/'F'"};
-  begin_file();
+  length = 0;
   for (uint64_t turn = 0; turn < 2; turn++) {
     begin_segment(METADATA | NEW_LIST | RAW);
     put(3, 4);
@@ -290,13 +279,12 @@ TEST(test_waveforms_of_two_devices)
     }
     end_segment();
   }
-  struct dea_table *table = read_bytes("waves.tdms", bytes, length);
+  read_bytes("waves.tdms", bytes, length);
   for (size_t i = 0; i < 3; i++) {
     assert_close(table->columns[i].start, starts[i], 1e-9, 0);
     assert_int_equal(table->columns[i].count, 4);
   }
   assert_true(is_said(DEA_NOTE, "'b/z' begins 2.5 s after"));
-  dea_table_destroy(ctx, table);
 }
 
 /* A program that crashed leaves -1 as the length of its last segment. */
@@ -313,9 +301,7 @@ TEST(test_scales)
                {"Linear", "scaled", raw, DEA_NOTE, NULL},
                {"Polynomial", "unscaled", raw, DEA_WARNING, "not applied"}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    begin_file();
-    begin_segment(METADATA | NEW_LIST | RAW);
-    put(1, 4);
+    begin_file(RAW, 1);
     put_object("/'bench'/'ai0'", 2, 2, 5); // int16
     put_text_property("NI_Scaling_Status", cases[i].status);
     put_text("NI_Number_Of_Scales");
@@ -328,18 +314,16 @@ TEST(test_scales)
     put(0xffff, 2);
     put(300, 2);
     end_segment();
-    struct dea_table *table = read_bytes("scale.tdms", bytes, length);
-    assert_column(table, "ai0", "", cases[i].wanted, 2);
+    read_bytes("scale.tdms", bytes, length);
+    assert_column("ai0", "", cases[i].wanted, 2);
     assert_true(cases[i].text == NULL || is_said(cases[i].said, cases[i].text));
-    dea_table_destroy(ctx, table);
   }
 }
 
 TEST(test_crashed)
 {
   static const double hv[] = {1, 2, 3};
-  begin_file();
-  put_bench(METADATA | NEW_LIST | RAW);
+  put_bench(RAW);
   put_double(1);
   put_double(2);
   put(1, 2);
@@ -351,10 +335,9 @@ TEST(test_crashed)
   length = segment + 12;
   put(UINT64_MAX, 8);
   length = end;
-  struct dea_table *table = read_bytes("crash.tdms", bytes, length);
-  assert_column(table, "HV", "kV", hv, 3);
+  read_bytes("crash.tdms", bytes, length);
+  assert_column("HV", "kV", hv, 3);
   assert_true(is_said(DEA_WARNING, "was not closed"));
-  dea_table_destroy(ctx, table);
 }
 
 TEST(test_refused)
@@ -366,34 +349,27 @@ TEST(test_refused)
   } channels[] = {{10, 0x7fffffff, "more values than the file has bytes"},
                   {0x10000d, 1, "type 0x10000d"},
                   {10, AS_BEFORE, "as before"}};
-  begin_file();
-  put_bench(METADATA | NEW_LIST | RAW | DAQMX);
+  put_bench(RAW | DAQMX);
   end_segment();
   assert_refused("bad.tdms", bytes, length, 0, "DAQmx raw data");
-  begin_file();
-  begin_segment(METADATA | NEW_LIST);
-  put(1, 4);
+  begin_file(0, 1);
   put_text("/'g'/'c'");
   put(0x1269, 4);
   begin_raw();
   end_segment();
   assert_refused("bad.tdms", bytes, length, 0, "DAQmx raw data");
   for (size_t i = 0; i < sizeof channels / sizeof channels[0]; i++) {
-    begin_file();
-    begin_segment(METADATA | NEW_LIST | RAW);
-    put(1, 4);
+    begin_file(RAW, 1);
     put_object("/'g'/'c'", (unsigned)channels[i].type, channels[i].count, 0);
     begin_raw();
     end_segment();
     assert_refused("bad.tdms", bytes, length, 0, channels[i].said);
   }
-  begin_file();
-  begin_segment(METADATA | NEW_LIST);
-  put(0xffffffff, 4);
+  begin_file(0, 0xffffffff);
   begin_raw();
   end_segment();
   assert_refused("bad.tdms", bytes, length, 0, "end early");
-  begin_file();
+  length = 0;
   begin_segment(0);
   end_segment();
   assert_refused("bad.tdms", bytes, length, 0, "no column");
@@ -404,22 +380,18 @@ TEST(test_refused)
 /* Every cut of a file is read as far as it goes, or refused; never beyond its end. */
 TEST(test_cuts)
 {
-  begin_file();
-  put_bench(METADATA | NEW_LIST | RAW);
+  put_bench(RAW);
   put_double(1);
   put_double(2);
   put(1, 2);
   put(2, 2);
   end_segment();
   for (size_t n = 4; n < length; n++) {
-    struct dea_table *table;
     write_bytes("cut.tdms", bytes, n);
-    dea_finding_clear(ctx);
-    dea_status status = dea_table_read(ctx, in_folder("cut.tdms"), NULL, &table);
+    dea_status status = read_table(in_folder("cut.tdms"));
     assert_true(status == DEA_OK || status == DEA_E_IO);
     assert_int_equal(status == DEA_OK, table != NULL);
     assert_true(status != DEA_OK || table->columns[0].count <= 2);
-    dea_table_destroy(ctx, table);
   }
 }
 
@@ -490,7 +462,7 @@ static size_t put_layout(const struct layout *l)
 {
   size_t done = 0;
   bool interleaved = (l->contents & INTERLEAVED) != 0;
-  begin_file();
+  length = 0;
   while (done + l->chunk * l->chunks + l->last <= VALUES) {
     bool first = done == 0;
     done += l->chunk * l->chunks;
@@ -529,11 +501,11 @@ static size_t put_layout(const struct layout *l)
 static void check_layout(const struct layout *l, size_t done)
 {
   bool interleaved = (l->contents & INTERLEAVED) != 0;
-  struct dea_table *table = read_bytes("layout.tdms", bytes, length);
+  read_bytes("layout.tdms", bytes, length);
   assert_int_equal(table->column_count, CHANNELS);
   size_t left = l->cut < l->last * 30 ? l->cut : l->last * 30;
   for (size_t c = 0; c < CHANNELS; c++) {
-    const struct dea_table_column *column = column_of(table, channels[c].name);
+    const struct dea_table_column *column = column_of(channels[c].name);
     size_t share = channels[c].size * l->last, there = left < share ? left : share;
     size_t count = done - l->last + (interleaved ? left / 30 : there / channels[c].size);
     left -= interleaved ? 0 : there;
@@ -550,7 +522,6 @@ static void check_layout(const struct layout *l, size_t done)
     }
   }
   assert_int_equal(dea_finding_count(ctx, DEA_WARNING), l->open);
-  dea_table_destroy(ctx, table);
 }
 
 /* Both byte orders, interleaved or not, one segment or many, of one chunk or many, with a shorter
@@ -580,17 +551,14 @@ static void check_case(const char *name, size_t count, const struct dea_table_co
                        size_t values)
 {
   char file[512];
-  struct dea_table *table;
   snprintf(file, sizeof file, DEA_SOURCE_DIR "/lab/tests/cases/tdms/%s", name);
-  dea_finding_clear(ctx);
-  assert_int_equal(dea_table_read(ctx, file, NULL, &table), DEA_OK);
+  assert_int_equal(read_table(file), DEA_OK);
   assert_int_equal(table->column_count, count);
   for (size_t c = 0; c < count; c++) {
-    assert_column(table, wanted[c].name, wanted[c].unit, wanted[c].values, values);
+    assert_column(wanted[c].name, wanted[c].unit, wanted[c].values, values);
     assert_true(table->columns[c].interval == 0.1);
   }
   assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 0);
-  dea_table_destroy(ctx, table);
 }
 
 /* Files whose first segment holds more values than bytes of metadata, and closed ones whose last
@@ -628,11 +596,10 @@ TEST(test_uneven_end)
 {
   struct layout l = {.chunk = 100, .chunks = 2, .last = 100, .cut = 1234};
   put_layout(&l);
-  struct dea_table *table = read_bytes("uneven.tdms", bytes, length);
-  assert_int_equal(column_of(table, "HV")->count, 1500);
-  assert_int_equal(column_of(table, "when")->count, 1400);
+  read_bytes("uneven.tdms", bytes, length);
+  assert_int_equal(column_of("HV")->count, 1500);
+  assert_int_equal(column_of("when")->count, 1400);
   assert_true(is_said(DEA_WARNING, "the values end within a row of channels"));
-  dea_table_destroy(ctx, table);
 }
 
 static void read_once(struct dea_context *own)
@@ -649,18 +616,15 @@ TEST(test_long_names)
     wanted[letters] = '\0';
     snprintf(name, sizeof name, "/'g'/'%s'", wanted);
     wanted[letters < 511 ? letters : 511] = '\0';
-    begin_file();
-    begin_segment(METADATA | NEW_LIST | RAW);
-    put(1, 4);
+    begin_file(RAW, 1);
     put_object(name, 10, 2, 0);
     begin_raw();
     put_double(1);
     put_double(2);
     end_segment();
-    struct dea_table *table = read_bytes("long.tdms", bytes, length);
+    read_bytes("long.tdms", bytes, length);
     assert_int_equal(table->column_count, 1);
     assert_string_equal(table->columns[0].name, wanted);
-    dea_table_destroy(ctx, table);
   }
 }
 
@@ -669,4 +633,4 @@ TEST(test_memory)
   assert_true(failing_each(read_once) > 5);
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, import_tear_down)

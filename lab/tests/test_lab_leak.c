@@ -52,7 +52,7 @@ struct outcome {
 static struct outcome play(const char *text, const struct film *film, double until_s)
 {
   static struct dea_leak_watch watch;
-  struct dea_protocol *p = good_protocol(ctx, text);
+  good_protocol(text);
   struct outcome out = {NAN, NAN, NAN, NAN, NAN, NAN};
   struct noise noise = {7};
   double rate_Hz = p->rate_Hz.si, before_V = 0;
@@ -87,7 +87,6 @@ static struct outcome play(const char *text, const struct film *film, double unt
       break;
     }
   }
-  dea_protocol_destroy(ctx, p);
   return out;
 }
 
@@ -108,7 +107,7 @@ TEST(test_what_is_learned)
 {
   static const double visits_uA[] = {10, 12, 11, 15, 13, 20, 14, 16, 16};
   static struct dea_leak_watch watch;
-  struct dea_protocol *p = good_protocol(ctx, STAYS);
+  good_protocol(STAYS);
   size_t learned = 0;
   dea_leak_watch_start(&watch, p);
   for (int i = 0; i < 8100; i++) { // -2 kV; sections of 10 s
@@ -124,7 +123,6 @@ TEST(test_what_is_learned)
     }
   }
   assert_int_equal(learned, 1);
-  dea_protocol_destroy(ctx, p);
 }
 
 /* Charging, spikes at jumps, noise, and a slow rise by half: no fault. */
@@ -232,7 +230,7 @@ TEST(test_what_does_not_repeat)
   film.capacitance_F = 1e-6; // 20 uA
   struct outcome out = play(ramp, &film, 220);
   assert_true(isnan(out.end_s) && out.learned_s > 110 + 16 && out.learned_s < 110 + 30);
-  struct dea_protocol *p = good_protocol(ctx, ramp);
+  good_protocol(ramp);
   struct dea_protocol_plan plan;
   assert_true(isnan(dea_protocol_period_s(&p->steps[0])));
   assert_close(dea_protocol_period_s(&p->steps[1]), 2, 1e-12, 0);
@@ -240,7 +238,6 @@ TEST(test_what_does_not_repeat)
   assert_close(dea_protocol_learning_s(&p->steps[2]), 18, 1e-12, 0);
   assert_int_equal(dea_protocol_check(ctx, p, &plan), DEA_OK);
   assert_non_null(find_finding(ctx, DEA_NOTE, "has no base line in 2 of 3 steps (step 1)"));
-  dea_protocol_destroy(ctx, p);
 }
 
 /* The paper's staircase of 15 cycles at each voltage: each has its base line, and the next voltage,
@@ -258,22 +255,19 @@ TEST(test_staircase)
   film.step = 10;
   out = play(stairs, &film, 100);
   assert_true(out.end_s > 82 && out.end_s < 90);
-  struct dea_protocol *p = good_protocol(ctx, stairs);
+  good_protocol(stairs);
   assert_close(dea_protocol_period_s(&p->steps[0]), 2, 1e-12, 0);
   assert_close(dea_protocol_learning_s(&p->steps[0]), 18, 1e-12, 0);
-  dea_protocol_destroy(ctx, p);
-  p = good_protocol(ctx,
-                    BENCH "waveform: {kind: staircase, values: [1 kV, 2 kV], frequency: 0.5 Hz, "
-                          "cycles: 9}\n");
+  good_protocol(BENCH "waveform: {kind: staircase, values: [1 kV, 2 kV], frequency: 0.5 Hz, "
+                      "cycles: 9}\n");
   assert_true(isinf(dea_protocol_learning_s(&p->steps[0]))); // 18 s at each
-  dea_protocol_destroy(ctx, p);
 }
 
 /* The watch of a drive: what it notices, and that the fixed limit holds before and after. */
 TEST(test_fixed_limit_stays)
 {
   static struct dea_drive_watch w;
-  struct dea_protocol *p = good_protocol(ctx, SQUARE);
+  good_protocol(SQUARE);
   for (int k = 0; k < 2; k++) {
     char why[DEA_WHY_ENDED_SIZE] = "";
     size_t events = 0, i = 0, from = k == 0 ? 500 : 6000;
@@ -291,7 +285,6 @@ TEST(test_fixed_limit_stays)
     assert_non_null(strstr(why, "safety.trip_current"));
     assert_int_equal(events, k);
   }
-  dea_protocol_destroy(ctx, p);
 }
 
 /* Two weeks of a life test of a slow triangle, a sample a tenth of a second: an ageing film is none
@@ -314,4 +307,4 @@ TEST(test_weeks)
   }
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, protocol_tear_down)

@@ -3,34 +3,32 @@
 // ctest: supply
 #include "supply_drive.h"
 
-#include "fake_line_supply.h"
-
-static void answer(struct line_supply *s, const char *command, char out[LINE_SUPPLY_ANSWER])
+static void answer(struct supply *s, const char *command, char out[SUPPLY_ANSWER])
 {
   double value;
   int number;
   if (sscanf(command, "SHV %lf", &value) == 1) {
     s->set_V = value;
-    snprintf(out, LINE_SUPPLY_ANSWER, "[HV] %.1f", value);
+    snprintf(out, SUPPLY_ANSWER, "[HV] %.1f", value);
   } else if (strcmp(command, "QMes") == 0) {
-    snprintf(out, LINE_SUPPLY_ANSWER, "[QMes] HV = %.1f V // LV = 5.1 V", s->lied_V);
+    snprintf(out, SUPPLY_ANSWER, "[QMes] HV = %.1f V // LV = 5.1 V", s->shown_V);
   } else if (strcmp(command, "EStop") == 0) {
     s->mode = 0;
     s->set_V = 0;
-    snprintf(out, LINE_SUPPLY_ANSWER, "[EStop]");
+    snprintf(out, SUPPLY_ANSWER, "[EStop]");
   } else if (sscanf(command, "SM%d 1 255", &number) == 1) {
     s->mode = number;
-    snprintf(out, LINE_SUPPLY_ANSWER, "[SM%d]", number);
+    snprintf(out, SUPPLY_ANSWER, "[SM%d]", number);
   }
 }
 
-static void begin(struct line_supply *s, const char *connect)
+static void begin(struct supply *s, const char *connect)
 {
   char text[2048];
   s->answer = answer;
   s->error = "unknown command";
   s->buffer = 60;
-  line_supply_start(s);
+  supply_start(s);
   snprintf(text, sizeof text,
            "dea-protocol: 1\n"
            "waveform: {kind: square, high: 2 kV, rise_time: 1 s, cycles: 2, frequency: 0.25 Hz}\n"
@@ -44,75 +42,65 @@ static void begin(struct line_supply *s, const char *connect)
   command_write("p.yaml", text);
 }
 
-/* Whatever the one before has left: a line may have the name of another. */
-static pid_t arm(void)
-{
-  static const char *const arguments[] = {"drive", "p.yaml", "--arm", "--checked",
-                                          "-f",    "-o",     "o.h5",  NULL};
-  supply_end_guards(0);
-  return supply_begin(arguments);
-}
-
 TEST(test_plays)
 {
-  static struct line_supply s;
-  s = (struct line_supply){0};
+  static struct supply s;
+  s = (struct supply){0};
   begin(&s, "SM1 1 255 1 100 0 0 0");
-  pid_t child = arm();
-  bool reached = line_supply_reaches(&s, 1900, 10);
+  pid_t child = supply_arm_checked("o.h5");
+  bool reached = supply_reaches(&s, 1900, 10);
   int mode = s.mode, code = supply_wait(child, 30);
   if (code != 0 || !reached) {
     fail_msg("%d\n%s%s", code, command_out, command_err);
   }
   assert_int_equal(mode, 1);
   assert_true(supply_said_zero() && s.mode == 0 && s.overflows == 0 && s.hurried == 0);
-  double highest_V = line_supply_highest(&s);
+  double highest_V = supply_highest(&s);
   assert_true(highest_V > 1900 && highest_V <= 2000);
-  line_supply_stop(&s);
+  supply_stop(&s);
 }
 
 TEST(test_faults)
 {
   static const struct {
-    enum line_supply_fault fault;
+    enum supply_fault fault;
     const char *message;
-  } cases[] = {{LINE_SUPPLY_HANGS, "did not answer"},
-               {LINE_SUPPLY_GARBLES, "which"},
-               {LINE_SUPPLY_ERRS, "answered 'unknown command'"},
-               {LINE_SUPPLY_PULLED, "the connection to the OCHVPS"}};
-  static struct line_supply s;
+  } cases[] = {{SUPPLY_HANGS, "did not answer"},
+               {SUPPLY_GARBLES, "which"},
+               {SUPPLY_ERRS, "answered 'unknown command'"},
+               {SUPPLY_HANGS_UP, "the connection to the OCHVPS"}};
+  static struct supply s;
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    s = (struct line_supply){0};
+    s = (struct supply){0};
     begin(&s, "SM1 1 255 1 100 0 0 0");
-    pid_t child = arm();
-    assert_true(line_supply_reaches(&s, 1000, 10));
+    pid_t child = supply_arm_checked("o.h5");
+    assert_true(supply_reaches(&s, 1000, 10));
     atomic_store(&s.fault, cases[i].fault);
     assert_int_equal(supply_wait(child, 20), 6);
     assert_false(supply_said_zero());
     assert_contains(command_err, cases[i].message);
-    line_supply_stop(&s);
+    supply_stop(&s);
   }
 }
 
 TEST(test_refused)
 {
   static const char *const wrong[] = {"SHV 3000", "SM1 1 255\\rSHV 3000", "EStop"};
-  static const char *const dry[] = {"drive", "p.yaml", NULL};
-  static struct line_supply s;
+  static struct supply s;
   for (size_t i = 0; i < 3; i++) {
-    s = (struct line_supply){0};
+    s = (struct supply){0};
     begin(&s, wrong[i]);
-    assert_int_equal(supply_run_dea(dry, 20), 3);
+    assert_int_equal(supply_run_dea("drive p.yaml", 20), 3);
     assert_contains(command_err, i == 1 ? "control character" : "that connect channels");
-    assert_true(line_supply_highest(&s) == 0);
-    line_supply_stop(&s);
+    assert_true(supply_highest(&s) == 0);
+    supply_stop(&s);
   }
-  s = (struct line_supply){0}; // a command that it does not know
+  s = (struct supply){0}; // a command that it does not know
   begin(&s, "SMA");
-  assert_int_equal(supply_wait(arm(), 20), 6);
+  assert_int_equal(supply_wait(supply_arm_checked("o.h5"), 20), 6);
   assert_contains(command_err, "answered 'unknown command' to 'SMA', which is an error");
-  assert_true(line_supply_highest(&s) == 0);
-  line_supply_stop(&s);
+  assert_true(supply_highest(&s) == 0);
+  supply_stop(&s);
 }
 
 TESTS(command_set_up, supply_tear_down)

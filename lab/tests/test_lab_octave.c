@@ -1,8 +1,4 @@
-/* Files that Octave wrote, read to the last bit; and version 7.3 of .mat, which Octave cannot
- * write: it comes from our own writer, which is libmatio's, and from HDF5 itself for what MATLAB
- * adds. */
-#include "base/h5.h"
-#include "import/mat.h"
+/* Files that Octave wrote, read to the last bit. */
 #include "import_text.h"
 #include "octave.h"
 
@@ -24,33 +20,28 @@ static void numbers_back(void)
   memcpy(laser, all + 2 * COUNT, sizeof laser);
 }
 
-static struct dea_table *read_file(const char *name)
+static void read_file(const char *name)
 {
-  struct dea_table *table;
-  dea_finding_clear(ctx);
-  if (dea_table_read(ctx, in_folder(name), NULL, &table) != DEA_OK) {
+  if (read_table(in_folder(name)) != DEA_OK) {
     fail_msg("%s: %s", name, dea_context_message(ctx));
   }
-  return table;
 }
 
 static void check(const char *name, const char *v, const char *z)
 {
-  struct dea_table *table = read_file(name);
-  assert_column(table, "t", "", time_s, COUNT);
-  assert_column(table, v, "", voltage, COUNT);
-  assert_column(table, z, "", laser, COUNT);
-  dea_table_destroy(ctx, table);
+  read_file(name);
+  assert_column("t", "", time_s, COUNT);
+  assert_column(v, "", voltage, COUNT);
+  assert_column(z, "", laser, COUNT);
 }
 
 TEST(test_mat)
 {
   octave(NUMBERS "data.v = v'; data.deep.z = z; save('-v6', 'six.mat', 't', 'data');"
-                 "save('-v7', 'seven.mat', 't', 'data'); save('-v4', 'four.mat', 't', 'v', 'z')");
+                 "save('-v7', 'seven.mat', 't', 'data')");
   numbers_back();
   check("six.mat", "data.v", "data.deep.z");
   check("seven.mat", "data.v", "data.deep.z");
-  check("four.mat", "v", "z");
 }
 
 /* MATLAB's variables carry units in their names only. */
@@ -59,11 +50,10 @@ TEST(test_mat_units)
   octave(NUMBERS
          "data.voltage_kV = v; z_um = [z z]; save('-v6', 'units.mat', 't', 'data', 'z_um')");
   numbers_back();
-  struct dea_table *table = read_file("units.mat");
-  assert_column(table, "t", "", time_s, COUNT);
-  assert_column(table, "data.voltage_kV", "kV", voltage, COUNT);
-  assert_column(table, "z_um(2)", "um", laser, COUNT);
-  dea_table_destroy(ctx, table);
+  read_file("units.mat");
+  assert_column("t", "", time_s, COUNT);
+  assert_column("data.voltage_kV", "kV", voltage, COUNT);
+  assert_column("z_um(2)", "um", laser, COUNT);
 }
 
 TEST(test_mat_classes)
@@ -75,62 +65,20 @@ TEST(test_mat_classes)
          "w = ones(2, 2, 2); fs = 1000; s = 'some words'; r(2).q = 3;"
          "save('-v7', 'classes.mat', 'a', 'b', 'c', 'd', 'e', 'm', 'x', 'n', 'k', 'w', 'fs', 's', "
          "'r')");
-  struct dea_table *table = read_file("classes.mat");
-  assert_column(table, "a", "", i8, 2);
-  assert_column(table, "b", "", u16, 2);
-  assert_column(table, "c", "", b, 2);
-  assert_column(table, "d", "", s, 2);
-  assert_column(table, "e", "", i64, 2);
-  assert_column(table, "m(1)", "", m1, 3);
-  assert_column(table, "m(2)", "", m2, 3);
+  read_file("classes.mat");
+  assert_column("a", "", i8, 2);
+  assert_column("b", "", u16, 2);
+  assert_column("c", "", b, 2);
+  assert_column("d", "", s, 2);
+  assert_column("e", "", i64, 2);
+  assert_column("m(1)", "", m1, 3);
+  assert_column("m(2)", "", m2, 3);
   assert_int_equal(table->column_count, 8);
   assert_string_equal(table->note, "s: some words");
   assert_true(is_said(DEA_NOTE, "'x' is complex"));
   assert_true(is_said(DEA_NOTE, "'k' is a cell array"));
   assert_true(is_said(DEA_NOTE, "'w' has more than two dimensions"));
   assert_true(is_said(DEA_NOTE, "'r' is an array of structs"));
-  dea_table_destroy(ctx, table);
-}
-
-/* HDF5 is in our library and once more below libmatio: both are used one after the other. */
-TEST(test_mat_73)
-{
-  const struct dea_mat_variable variables[] = {
-      {.name = "t", .values = time_s, .count = COUNT},
-      {.name = "v", .values = voltage, .count = COUNT},
-      {.name = "z", .values = laser, .count = COUNT},
-      {.name = "words", .text = "some words"},
-  };
-  octave(NUMBERS);
-  numbers_back();
-  assert_int_equal(dea_mat_write(ctx, in_folder("new.mat"), variables, 4, DEA_MAT_73), DEA_OK);
-  check("new.mat", "v", "z");
-  // Octave reads the HDF5 of it, transposed as MATLAB stores it
-  octave(NUMBERS "l = load('-hdf5', 'new.mat'); n = isnan(v);"
-                 "assert(l.v(~n)(:) == v(~n)); assert(l.t(:) == t)");
-  // a timetable, as MATLAB marks it
-  struct h5 h;
-  dea_h5_begin(&h, ctx, in_folder("new.mat"));
-  hid_t file = H5Fopen(in_folder("new.mat"), H5F_ACC_RDWR, H5P_DEFAULT);
-  assert_true(file >= 0);
-  uint32_t numbers[6] = {3707764736u, 2, 1, 1, 1, 1};
-  hsize_t dims[2] = {6, 1};
-  hid_t space = H5Screate_simple(2, dims, NULL);
-  hid_t set = H5Dcreate2(file, "log", H5T_STD_U32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  assert_true(H5Dwrite(set, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0);
-  hid_t type = H5Tcopy(H5T_C_S1), scalar = H5Screate(H5S_SCALAR);
-  H5Tset_size(type, 9);
-  hid_t attribute = H5Acreate2(set, "MATLAB_class", type, scalar, H5P_DEFAULT, H5P_DEFAULT);
-  assert_true(H5Awrite(attribute, type, "timetable") >= 0);
-  H5Aclose(attribute);
-  H5Sclose(scalar);
-  H5Tclose(type);
-  H5Dclose(set);
-  H5Sclose(space);
-  H5Fclose(file);
-  dea_h5_end(&h);
-  check("new.mat", "v", "z");
-  assert_true(is_said(DEA_NOTE, "'log' is an object"));
 }
 
 TEST(test_damaged_mat)
@@ -140,15 +88,14 @@ TEST(test_damaged_mat)
   FILE *file = fopen(in_folder("whole.mat"), "rb");
   size_t n = fread(bytes, 1, sizeof bytes, file);
   fclose(file);
-  struct dea_table *table;
   write_bytes("short.mat", bytes, n / 2);
-  assert_int_equal(dea_table_read(ctx, in_folder("short.mat"), NULL, &table), DEA_E_IO);
+  assert_int_equal(read_table(in_folder("short.mat")), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "longer than the file"));
-  assert_refused("no.mat", "not a .mat file at all", 22, 0, "the variable at byte 0 is none");
+  assert_refused("no.mat", "not a .mat file at all", 22, 0, "is no .mat file of version 5 or 7.3");
   // a length that the file cannot have: the number of rows of the first variable
   bytes[128 + 32 + 3] = 0x7f;
   write_bytes("claims.mat", bytes, n);
-  assert_int_equal(dea_table_read(ctx, in_folder("claims.mat"), NULL, &table), DEA_E_IO);
+  assert_int_equal(read_table(in_folder("claims.mat")), DEA_E_IO);
 }
 
 /* All digits of a double: 17 of them come back as they were. */
@@ -164,15 +111,13 @@ TEST(test_csv)
   check("head.csv", "v", "z");
   static const char *const bare[] = {"semicolon.csv", "tab.txt", "comma.csv"};
   for (size_t i = 0; i < 3; i++) {
-    struct dea_table *table = read_file(bare[i]);
-    assert_column(table, "column 1", "", time_s, COUNT);
-    assert_column(table, "column 2", "", voltage, COUNT);
-    assert_column(table, "column 3", "", laser, COUNT);
-    dea_table_destroy(ctx, table);
+    read_file(bare[i]);
+    assert_column("column 1", "", time_s, COUNT);
+    assert_column("column 2", "", voltage, COUNT);
+    assert_column("column 3", "", laser, COUNT);
   }
-  struct dea_table *table = read_file("octave.txt"); // "# name: t" and the like are comments
+  read_file("octave.txt"); // "# name: t" and the like are comments
   assert_int_equal(table->columns[0].count, COUNT);
-  dea_table_destroy(ctx, table);
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, import_tear_down)

@@ -15,16 +15,14 @@ static void pulls_of(double rho, const char *what)
   b.rho = rho;
   b.drift_per_s = 2e-6;
   for (uint64_t seed = 1; seed <= 200; seed++) {
-    struct dea_recording r = signal_record(&b, seed);
-    struct dea_reduction *out = reduced(&r, &plain);
+    record(&b, seed);
+    reduce(&plain);
     assert_int_equal(out->level_count, 1);
     assert_int_equal(out->levels[0].cycles, 5);
     const struct dea_cycle_value *v = &out->cycles[2].values[DEA_REDUCED_DISPLACEMENT];
     signal_pull(&cycle, v->amplitude, 300e-6, v->uncertainty);
     signal_pull(&level, out->levels[0].mean[DEA_REDUCED_DISPLACEMENT], 300e-6,
                 out->levels[0].uncertainty[DEA_REDUCED_DISPLACEMENT]);
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
   snprintf(name, sizeof name, "a cycle, %s", what);
   signal_check_pulls(name, &cycle);
@@ -32,13 +30,9 @@ static void pulls_of(double rho, const char *what)
   signal_check_pulls(name, &level);
 }
 
-TEST(test_uncertainty_of_independent_samples)
+TEST(test_uncertainty_of_samples)
 {
   pulls_of(0.0, "independent");
-}
-
-TEST(test_uncertainty_of_correlated_samples)
-{
   pulls_of(0.7, "correlated");
 }
 
@@ -52,16 +46,14 @@ TEST(test_uncertainty_of_profiles)
   options.fibre_tip_radius_m = 6e-3;
   double tip_truth = 300e-6 * signal_shape(&b, 6e-3);
   for (uint64_t seed = 1; seed <= 120; seed++) {
-    struct dea_recording r = signal_record(&b, seed);
-    struct dea_reduction *out = reduced(&r, &options);
+    record(&b, seed);
+    reduce(&options);
     assert_true(out->levelling.by_frame);
     const struct dea_voltage_level *level = &out->levels[0];
     signal_pull(&centre, level->mean[DEA_REDUCED_CENTRE], 300e-6,
                 level->uncertainty[DEA_REDUCED_CENTRE]);
     signal_pull(&tip, level->mean[DEA_REDUCED_FIBRE_TIP], tip_truth,
                 level->uncertainty[DEA_REDUCED_FIBRE_TIP]);
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
   signal_check_pulls("a level's centre", &centre);
   signal_check_pulls("a level's fibre tips", &tip);
@@ -77,8 +69,8 @@ TEST(test_frame_is_found_and_taken_off)
     struct dea_reduce_options options = plain;
     options.film_radius_m = known == 1 ? b.film_m : NAN;
     options.electrode_radius_m = b.electrode_m;
-    struct dea_recording r = signal_record(&b, 7);
-    struct dea_reduction *out = reduced(&r, &options);
+    record(&b, 7);
+    reduce(&options);
     const struct dea_levelling *l = &out->levelling;
     double pitch = r.profiles.x_m[1] - r.profiles.x_m[0];
     assert_true(l->by_frame);
@@ -97,8 +89,6 @@ TEST(test_frame_is_found_and_taken_off)
         assert_close(z, 300e-6 * signal_shape(&b, out->radius_m[i]), 0.0, 15e-6);
       }
     }
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
@@ -110,7 +100,7 @@ TEST(test_scatter_of_the_frames)
   struct dea_reduce_options options = plain;
   options.film_radius_m = b.film_m;
   options.electrode_radius_m = b.electrode_m;
-  struct dea_recording r = signal_record(&b, 3);
+  record(&b, 3);
   const struct dea_profiles *p = &r.profiles;
   double n = (double)p->count, squares = 0.0, sum = 0.0;
   for (size_t f = 0; f < p->count; f++) {
@@ -121,11 +111,9 @@ TEST(test_scatter_of_the_frames)
       p->z_m[f * p->points + i] += by;
     }
   }
-  struct dea_reduction *out = reduced(&r, &options);
+  reduce(&options);
   assert_true(out->levelling.by_frame);
   assert_close(out->levelling.offset_std_m, sqrt((squares - sum * sum / n) / (n - 1.0)), 1e-4, 0.0);
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 TEST(test_line_beside_the_centre_is_said)
@@ -134,12 +122,10 @@ TEST(test_line_beside_the_centre_is_said)
   struct dea_reduce_options options = plain;
   b.film_m = 14e-3; // a chord of a film of 15 mm
   options.film_radius_m = 15e-3;
-  struct dea_recording r = signal_record(&b, 3);
-  struct dea_reduction *out = reduced(&r, &options);
+  record(&b, 3);
+  reduce(&options);
   assert_close(out->levelling.beside_m, sqrt(225.0 - 196.0) * 1e-3, 0.03, 0.0);
   assert_true(noted("beside the centre"));
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 TEST(test_without_frame_the_outer_film_levels)
@@ -150,16 +136,14 @@ TEST(test_without_frame_the_outer_film_levels)
   b.points = 500;
   struct dea_reduce_options options = plain;
   options.fibre_tip_radius_m = 6e-3;
-  struct dea_recording r = signal_record(&b, 5);
-  struct dea_reduction *out = reduced(&r, &options);
+  record(&b, 5);
+  reduce(&options);
   assert_false(out->levelling.by_frame);
   assert_true(noted("no frame"));
   assert_true(isnan(out->levelling.frame_height_m));
   assert_close(out->levelling.centre_m, b.centre_m, 0.0, 0.4e-3);
   assert_close(tan(out->levelling.tilt_rad), b.tilt, 0.0, 1e-3);
   assert_close(out->levels[0].mean[DEA_REDUCED_CENTRE], 300e-6, 0.0, 8e-6);
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 TEST(test_shape)
@@ -172,19 +156,17 @@ TEST(test_shape)
     struct dea_reduce_options options = plain;
     options.film_radius_m = b.film_m;
     options.electrode_radius_m = b.electrode_m;
-    struct dea_recording r = signal_record(&b, 11);
-    struct dea_reduction *out = reduced(&r, &options);
+    record(&b, 11);
+    reduce(&options);
     const struct dea_voltage_level *level = &out->levels[0];
     assert_true(level->shape_uncertainty > 0.0 && level->shape_uncertainty < 0.08);
     assert_close(level->shape, b.cone, 0.0, 4.0 * level->shape_uncertainty + 0.01);
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
 // Levels, times, force ---------------------------------------------------------------------------
 
-static void check_levels(const struct signal_bench *b, const struct dea_reduction *out)
+static void check_levels(const struct signal_bench *b)
 {
   assert_int_equal(out->level_count, b->level_count);
   for (size_t l = 0; l < out->level_count; l++) {
@@ -221,15 +203,13 @@ TEST(test_levels_with_and_without_a_list)
     b.preload_N = 20e-3;
     b.cell_N = -3e-3;
     b.lead_s = 3.0;
-    struct dea_recording r = signal_record(&b, 21);
-    struct dea_reduction *out = reduced(&r, &plain);
-    check_levels(&b, out);
+    record(&b, 21);
+    reduce(&plain);
+    check_levels(&b);
     assert_close(out->noise[DEA_REDUCED_DISPLACEMENT], 1e-6, 0.1, 0.0);
     assert_close(out->force_offset_N, b.cell_N, 0.0, 2e-6);
     assert_close(out->preload_N, b.preload_N, 0.0, 5e-6);
     assert_int_equal(noted("was not measured"), k == 0);
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
@@ -243,23 +223,21 @@ TEST(test_cycles_at_rest)
   b.levels_V[2] = 4000.0;
   b.displacement = true;
   b.sigma = 1e-6;
-  struct dea_recording r = signal_record(&b, 2);
-  struct dea_reduction *out = reduced(&r, &plain);
+  record(&b, 2);
+  reduce(&plain);
   assert_int_equal(out->level_count, 3);
   assert_close(out->levels[0].voltage_V, 0.0, 0.0, 1e-9);
   assert_close(out->levels[0].mean[DEA_REDUCED_DISPLACEMENT], 0.0, 0.0,
                4.0 * out->levels[0].uncertainty[DEA_REDUCED_DISPLACEMENT]);
   assert_true(isnan(out->levels[0].rise_s[DEA_REDUCED_DISPLACEMENT]));
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
-static void fill_voltage(struct dea_recording *r, double (*voltage)(double))
+static void fill_voltage(double (*voltage)(double))
 {
-  for (size_t i = 0; i < r->channels[0].count; i++) {
-    double t = dea_channel_time(&r->channels[0], i), V = voltage(t);
-    r->channels[0].values[i] = V;
-    r->channels[1].values[i] = 1e-9 * fabs(V);
+  for (size_t i = 0; i < r.channels[0].count; i++) {
+    double t = dea_channel_time(&r.channels[0], i), V = voltage(t);
+    r.channels[0].values[i] = V;
+    r.channels[1].values[i] = 1e-9 * fabs(V);
   }
 }
 
@@ -300,9 +278,9 @@ TEST(test_other_waveforms)
              {triangle, 1, 10, 5000.0, 0.03},
              {both_signs, 2, 5, 3000.0, 1e-9}};
   for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) {
-    struct dea_recording r = two_channels(500.0, 5000);
-    fill_voltage(&r, all[k].voltage);
-    struct dea_reduction *out = reduced(&r, &plain);
+    record_two(500.0, 5000);
+    fill_voltage(all[k].voltage);
+    reduce(&plain);
     assert_int_equal(out->level_count, all[k].levels);
     assert_int_equal(out->cycle_count, all[k].cycles);
     const struct dea_voltage_level *last = &out->levels[out->level_count - 1];
@@ -313,8 +291,6 @@ TEST(test_other_waveforms)
       assert_close(last->mean[DEA_REDUCED_DISPLACEMENT], 1e-9 * all[k].largest_V, 0.04, 0.0);
       assert_true(noted("hold no voltage"));
     }
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
@@ -324,18 +300,16 @@ TEST(test_creep_and_fast_rise)
   struct signal_bench b = signal_bench_plain();
   b.displacement = true;
   b.tau_s = 1e-4;
-  struct dea_recording r = signal_record(&b, 1);
+  record(&b, 1);
   struct dea_channel *z = &r.channels[1];
   for (size_t i = 0; i < z->count; i++) {
     double since = fmod(dea_channel_time(z, i) - b.lead_s + 1e-9, b.cycle_s);
     z->values[i] += since >= 0.0 && since < 1.0 ? 20e-6 * since : 0.0;
   }
-  struct dea_reduction *out = reduced(&r, &plain);
+  reduce(&plain);
   const struct dea_voltage_level *level = &out->levels[0];
   assert_true(isnan(level->rise_s[DEA_REDUCED_DISPLACEMENT]));            // faster than the samples
   assert_close(level->creep[DEA_REDUCED_DISPLACEMENT], 16e-6, 0.03, 0.0); // 20 um/s for 0.8 s
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 /* A displacement whose clock was put wrongly beside the voltage's is told, with how far it is off;
@@ -350,10 +324,10 @@ TEST(test_clocks_that_do_not_agree)
     struct signal_bench b = signal_bench_plain();
     b.displacement = true;
     b.sigma = 1e-6;
-    struct dea_recording r = signal_record(&b, 3);
+    record(&b, 3);
     struct dea_channel *z = &r.channels[1];
     z->start_s += all[k].off_s;
-    struct dea_reduction *out = reduced(&r, &plain);
+    reduce(&plain);
     assert_true(noted("is most like the square of the voltage") == (all[k].said != NULL));
     if (all[k].said != NULL) {
       size_t count;
@@ -369,8 +343,6 @@ TEST(test_clocks_that_do_not_agree)
       }
       assert_true(found);
     }
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
@@ -384,19 +356,17 @@ TEST(test_rise_of_the_filter)
   b.displacement = true;
   for (int slow = 0; slow < 2; slow++) {
     b.tau_s = slow ? 0.03 : 0.002;
-    struct dea_recording r = signal_record(&b, 7);
+    record(&b, 7);
     for (size_t c = 0; c < r.channel_count; c++) {
       r.channels[c].filter_Hz = r.channels[c].kind == DEA_CHANNEL_DISPLACEMENT ? 20.0 : NAN;
     }
-    struct dea_reduction *out = reduced(&r, &plain);
+    reduce(&plain);
     double rise_s = out->levels[0].rise_s[DEA_REDUCED_DISPLACEMENT];
     assert_int_equal(noted("which is its filter of 20 Hz (16.5 ms of a step)"), !slow);
     // of two that follow each other about the root of the sum of squares
     double own_s = 0.3297 / 20.0, film_s = log(9.0) * b.tau_s;
     assert_close(rise_s, sqrt(own_s * own_s + film_s * film_s), 0.05, 0.0);
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
-TESTS(context_set_up, context_tear_down)
+TESTS(context_set_up, reduced_tear_down)

@@ -10,15 +10,13 @@ TEST(test_clipped_sensor_is_said)
   b.displacement = true;
   b.sigma = 1e-6;
   for (int k = 0; k < 2; k++) {
-    struct dea_recording r = signal_record(&b, 1);
+    record(&b, 1);
     for (size_t i = 0; i < r.channels[1].count && k == 1; i++) {
       r.channels[1].values[i] = fmin(r.channels[1].values[i], 250e-6);
     }
-    struct dea_reduction *out = reduced(&r, &plain);
+    reduce(&plain);
     assert_int_equal(noted("250 um, the end of its range"), k == 1);
     assert_int_equal(isnan(out->levels[0].mean[DEA_REDUCED_DISPLACEMENT]), k == 1);
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
@@ -32,7 +30,7 @@ TEST(test_outlier_among_few_frames)
   b.point_sigma = 2e-6;
   b.m_per_V2 = 4e-3 / 36e6; // steep: 0.36 mm/mm, up to an apex that is no outlier
   b.cone = 1.0;
-  struct dea_recording r = signal_record(&b, 4);
+  record(&b, 4);
   size_t frame = (size_t)((b.lead_s + 2.0 * b.cycle_s + 0.5 * b.cycle_s - 0.08) * b.frame_Hz);
   for (size_t i = 0; i < b.points; i++) { // the whole frame
     r.profiles.z_m[frame * b.points + i] +=
@@ -41,23 +39,21 @@ TEST(test_outlier_among_few_frames)
   for (size_t f = 0; f < r.profiles.count; f++) { // and a point on the slope of each
     r.profiles.z_m[f * b.points + 60] -= 300e-6;
   }
-  struct dea_reduction *out = reduced(&r, &plain);
+  reduce(&plain);
   double apex = 4e-3 * signal_shape(&b, 0.0);
   assert_close(out->cycles[2].values[DEA_REDUCED_CENTRE].amplitude, apex, 0.0, 20e-6);
   assert_true(out->levelling.outliers >= r.profiles.count);
   assert_true(out->levelling.outliers < r.profiles.count + r.profiles.count / 4);
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 // Little or nothing ------------------------------------------------------------------------------
 
 TEST(test_without_voltage)
 {
-  struct dea_recording r = {.file = "", .title = ""};
-  struct dea_reduction *out;
-  assert_int_equal(dea_reduce(ctx, &r, NULL, &out), DEA_E_IO);
-  assert_null(out);
+  const struct dea_recording none = {.file = "", .title = ""};
+  struct dea_reduction *reduction;
+  assert_int_equal(dea_reduce(ctx, &none, NULL, &reduction), DEA_E_IO);
+  assert_null(reduction);
   assert_non_null(strstr(dea_context_message(ctx), "no voltage"));
 }
 
@@ -66,7 +62,7 @@ TEST(test_little)
   const size_t counts[] = {1, 2, 3, 9, 50};
   for (size_t k = 0; k < 5; k++) {
     for (int what = 0; what < 4; what++) {
-      struct dea_recording r = two_channels(100.0, counts[k]);
+      record_two(100.0, counts[k]);
       signal_channel(&r, "current", DEA_CHANNEL_CURRENT, 100.0, counts[k]);
       signal_channel(&r, "force", DEA_CHANNEL_FORCE, 100.0, counts[k]);
       for (size_t c = 0; c < r.channel_count; c++) {
@@ -77,12 +73,10 @@ TEST(test_little)
                                                 : (double)(i % 2) * 4000.0;
         }
       }
-      struct dea_reduction *out = reduced(&r, &plain);
+      reduce(&plain);
       assert_true(what == 3 || out->cycle_count == 0);
       assert_true(out->cycle_count > 0 || noted("there are no cycles"));
       assert_int_equal(out->discharge_count, 0);
-      dea_reduction_destroy(ctx, out);
-      signal_free(&r);
     }
   }
 }
@@ -94,19 +88,18 @@ TEST(test_few_samples_and_a_single_cycle)
 {
   enum { CYCLES = 7, COUNT = 8 * CYCLES + 4 };
   static const double expected[][2] = {{2, 200}, {4, 800}};
-  struct dea_recording r = two_channels(4.0, COUNT);
+  record_two(4.0, COUNT);
   uint64_t seed = 1;
   for (size_t i = 0; i < COUNT; i++) {
     double level = i % 8 < 4 ? 0.0 : i / 8 + 1 == CYCLES ? 4.0 : 2.0;
     r.channels[0].values[i] = 1e3 * level;
     r.channels[1].values[i] = 50e-6 * level * level + 0.3e-6 * signal_normal(&seed);
   }
-  struct dea_reduction *out = reduced(&r, &plain);
+  reduce(&plain);
   assert_true(noted("'displacement' is formed: the last 20 %"));
-  dea_reduction_destroy(ctx, out);
   struct dea_reduce_options options = plain;
   options.settle = 0.6;
-  out = reduced(&r, &options);
+  reduce(&options);
   assert_false(noted("is formed"));
   char folder[] = "dea-little-XXXXXX", name[64], line[200];
   assert_non_null(mkdtemp(folder));
@@ -128,8 +121,6 @@ TEST(test_few_samples_and_a_single_cycle)
   assert_int_equal(rows, 2);
   snprintf(line, sizeof line, "rm -r '%s'", folder);
   assert_int_equal(system(line), 0);
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 /* The amplifier's input in place of what was asked, one of the other sign, and one that was not
@@ -141,7 +132,7 @@ TEST(test_asked_voltage_of_something_else)
     struct signal_bench b = signal_bench_plain();
     b.voltage = true;
     b.list = false;
-    struct dea_recording r = signal_record(&b, 1);
+    record(&b, 1);
     const struct dea_channel *asked = dea_recording_kind(&r, DEA_CHANNEL_COMMAND);
     struct dea_channel *a =
         signal_channel(&r, "current", DEA_CHANNEL_CURRENT, b.rate_Hz, asked->count);
@@ -150,15 +141,13 @@ TEST(test_asked_voltage_of_something_else)
       a->values[i] = 1e-12 * asked->values[i] + 1e-10 * signal_normal(&seed);
       asked->values[i] *= factors[k];
     }
-    struct dea_reduction *out = reduced(&r, &plain);
+    reduce(&plain);
     assert_int_equal(noted("the measured one is taken for both"), k > 0);
     assert_int_equal(out->cycle_count, b.cycles);
     assert_int_equal(out->level_count, 1);
     for (size_t d = 0; d < out->discharge_count; d++) {
       assert_int_equal(out->discharges[d].kind, DEA_DISCHARGE);
     }
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
@@ -167,16 +156,13 @@ TEST(test_two_channels_of_one_kind)
 {
   struct signal_bench b = signal_bench_plain();
   b.displacement = true;
-  struct dea_recording r = signal_record(&b, 1);
-  struct dea_reduction *out = reduced(&r, &plain);
+  record(&b, 1);
+  reduce(&plain);
   assert_false(noted("is left out"));
-  dea_reduction_destroy(ctx, out);
   signal_channel(&r, "stage", DEA_CHANNEL_DISPLACEMENT, b.rate_Hz, r.channels[0].count);
-  out = reduced(&r, &plain);
+  reduce(&plain);
   assert_true(noted("channel 'stage' is left out"));
   assert_true(out->levels[0].mean[DEA_REDUCED_DISPLACEMENT] > 200e-6);
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 /* A breakdown whose voltage swings to the other side is one of the asked voltage. */
@@ -184,7 +170,7 @@ TEST(test_breakdown_that_swings)
 {
   struct signal_bench b = signal_bench_plain();
   b.voltage = true;
-  struct dea_recording r = signal_record(&b, 1);
+  record(&b, 1);
   const struct dea_channel *u = dea_recording_kind(&r, DEA_CHANNEL_VOLTAGE);
   struct dea_channel *a = signal_channel(&r, "current", DEA_CHANNEL_CURRENT, b.rate_Hz, u->count);
   uint64_t seed = 3;
@@ -193,11 +179,9 @@ TEST(test_breakdown_that_swings)
     u->values[i] = broken ? (i % 2 == 0 ? 900.0 : -900.0) : u->values[i];
     a->values[i] = (broken ? 1e-3 : 0.0) + 1e-9 * signal_normal(&seed);
   }
-  struct dea_reduction *out = reduced(&r, &plain);
+  reduce(&plain);
   assert_false(noted("the measured one is taken"));
   assert_true(out->discharge_count > 0 && out->discharges[0].kind == DEA_BREAKDOWN);
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 /* Ramps of 1 s to 1, 2, ... 5 kV on 500 pF: of low voltages much of the ramp is within what counts
@@ -206,7 +190,7 @@ TEST(test_capacitance_by_slow_ramps)
 {
   enum { RATE = 500, LEVELS = 5, COUNT = RATE * (1 + 6 * LEVELS) };
   static const double film_F = 500e-12;
-  struct dea_recording r = two_channels(RATE, COUNT);
+  record_two(RATE, COUNT);
   struct dea_channel *a = signal_channel(&r, "current", DEA_CHANNEL_CURRENT, RATE, COUNT);
   uint64_t seed = 2;
   double before_V = 0.0;
@@ -218,14 +202,12 @@ TEST(test_capacitance_by_slow_ramps)
     a->values[i] = film_F * (volts - before_V) * RATE + 1e-12 * volts + 1e-9 * signal_normal(&seed);
     before_V = volts;
   }
-  struct dea_reduction *out = reduced(&r, &plain);
+  reduce(&plain);
   assert_int_equal(out->level_count, LEVELS);
   for (size_t l = 0; l < LEVELS; l++) {
     assert_close(out->levels[l].capacitance_F, film_F, 3e-3, 0.0);
   }
   assert_int_equal(out->discharge_count, 0);
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 /* Cycles at 0 V behind others, on for 1.5 of 2 s: their parts are those of the first one, whose
@@ -234,7 +216,7 @@ TEST(test_quiet_cycles_behind_others)
 {
   enum { RATE = 100, CYCLES = 8, COUNT = 28 * RATE };
   static struct dea_recorded_cycle list[CYCLES];
-  struct dea_recording r = two_channels(RATE, COUNT);
+  record_two(RATE, COUNT);
   uint64_t seed = 2;
   for (size_t i = 0; i < COUNT; i++) {
     double t = (double)i / RATE - 8.0, phase = t - 2.0 * floor(t / 2.0);
@@ -249,15 +231,13 @@ TEST(test_quiet_cycles_behind_others)
   }
   r.cycles = list;
   r.cycle_count = CYCLES;
-  struct dea_reduction *out = reduced(&r, &plain);
+  reduce(&plain);
   assert_int_equal(out->cycle_count, CYCLES);
   for (size_t k = 0; k < CYCLES; k++) {
     double wanted_m = k == 3 || k == 4 ? 0.0 : 1e-3;
     assert_close(out->cycles[k].values[DEA_REDUCED_DISPLACEMENT].amplitude, wanted_m, 0, 1e-6);
   }
-  dea_reduction_destroy(ctx, out);
   r.cycles = NULL;
-  signal_free(&r);
 }
 
 /* A clock that counts from a moment days before: history.csv has every sample. */
@@ -265,7 +245,7 @@ TEST(test_times_far_from_zero)
 {
   struct signal_bench b = signal_bench_plain();
   b.displacement = b.voltage = true;
-  struct dea_recording r = signal_record(&b, 1);
+  record(&b, 1);
   for (size_t c = 0; c < r.channel_count; c++) {
     r.channels[c].start_s = 1e7 - 1e3;
   }
@@ -273,13 +253,11 @@ TEST(test_times_far_from_zero)
     r.cycles[k].start_s += 1e7 - 1e3;
     r.cycles[k].end_s += 1e7 - 1e3;
   }
-  struct dea_reduction *out = reduced(&r, &plain);
+  reduce(&plain);
   struct dea_reduced_series series;
   assert_int_equal(dea_reduced_series_fill(ctx, &r, out, DEA_REDUCED_SERIES_MAX, &series), DEA_OK);
   assert_int_equal(series.rows, r.channels[0].count);
   dea_reduced_series_free(ctx, &series);
-  dea_reduction_destroy(ctx, out);
-  signal_free(&r);
 }
 
 TEST(test_empty_profiles)
@@ -287,7 +265,7 @@ TEST(test_empty_profiles)
   for (int k = 0; k < 3; k++) {
     struct signal_bench b = line_laser();
     b.points = k == 1 ? 8 : 100;
-    struct dea_recording r = signal_record(&b, 1);
+    record(&b, 1);
     size_t all = r.profiles.points * r.profiles.count;
     for (size_t i = 0; i < all && k == 0; i++) {
       r.profiles.z_m[i] = NAN;
@@ -295,12 +273,10 @@ TEST(test_empty_profiles)
     if (k == 2) {
       r.profiles.x_m[4] = r.profiles.x_m[3];
     }
-    struct dea_reduction *out = reduced(&r, &plain);
+    reduce(&plain);
     assert_int_equal(out->cycle_count, 3);
     assert_true(isnan(out->levels[0].mean[DEA_REDUCED_CENTRE]));
     assert_true(noted(k == 0 ? "no frame" : "16 points or more"));
-    dea_reduction_destroy(ctx, out);
-    signal_free(&r);
   }
 }
 
@@ -308,10 +284,10 @@ static struct dea_recording whole;
 
 static dea_status reduce_whole(struct dea_context *own)
 {
-  struct dea_reduction *out;
+  struct dea_reduction *reduction;
   const struct dea_reduce_options options = {3e-3, 15e-3, 3.75e-3, 0.0, NAN};
-  dea_status status = dea_reduce(own, &whole, &options, &out);
-  dea_reduction_destroy(own, out);
+  dea_status status = dea_reduce(own, &whole, &options, &reduction);
+  dea_reduction_destroy(own, reduction);
   return status;
 }
 
@@ -332,4 +308,4 @@ TEST(test_memory)
   signal_free(&whole);
 }
 
-TESTS(context_set_up, context_tear_down)
+TESTS(context_set_up, reduced_tear_down)

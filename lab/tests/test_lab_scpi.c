@@ -2,7 +2,7 @@
 #include "emulator.h"
 #include "failing_allocator.h"
 #include "instrument/line_reader.h"
-#include "instrument/scpi.h"
+#include "instrument/scpi_parse.h"
 #include "instrument/timed_output.h"
 
 #include "message_fixture.h"
@@ -873,7 +873,7 @@ TEST(test_name_that_nobody_knows)
   char host[DEA_INSTRUMENT_HOST_SIZE];
   memcpy(host, b.instrument->host, sizeof host);
   atomic_store(&no_names, true);
-  shutdown(((struct dea_scpi *)b.instrument)->link.socket.descriptor, SHUT_RDWR);
+  shutdown(atomic_load(&b.emulator.connection), SHUT_RDWR);
   zero = dea_instrument_stop(ctx, b.instrument);
   assert_int_equal(zero.state, DEA_ZERO_READ_BACK);
   b.instrument->type->close(ctx, b.instrument);

@@ -64,19 +64,19 @@ static void free_record(struct record *r)
 }
 
 /* Plays a protocol to its end, `block` samples at a time. */
-static dea_status play(struct dea_context *context, const struct dea_protocol *p, size_t block,
-                       struct record *r)
+static dea_status play(struct dea_context *context, const struct dea_protocol *protocol,
+                       size_t block, struct record *r)
 {
   struct dea_instrument *bench;
-  size_t count = (size_t)ceil(dea_protocol_duration_s(p) * p->rate_Hz.si);
+  size_t count = (size_t)ceil(dea_protocol_duration_s(protocol) * protocol->rate_Hz.si);
   const struct dea_sink sink = {r, take_samples, take_profile, NULL};
-  *r = (struct record){.inputs = p->input_count};
-  dea_status status = dea_instrument_open(context, &p->sim, p, &bench);
+  *r = (struct record){.inputs = protocol->input_count};
+  dea_status status = dea_instrument_open(context, &protocol->sim, protocol, &bench);
   if (status != DEA_OK) {
     return status;
   }
   r->points = bench->profile_points;
-  r->volts = malloc(count * p->input_count * sizeof(double) + 1);
+  r->volts = malloc(count * protocol->input_count * sizeof(double) + 1);
   r->z_m = malloc((count * r->points + 1) * sizeof(double));
   r->frame_s = malloc((count + 1) * sizeof(double));
   r->x_m = malloc((r->points + 1) * sizeof(double));
@@ -86,7 +86,8 @@ static dea_status play(struct dea_context *context, const struct dea_protocol *p
     double volts[4096];
     size_t now = count - i < block ? count - i : block;
     for (size_t k = 0; k < now; k++) {
-      volts[k] = dea_protocol_value(p, (double)(i + k) / p->rate_Hz.si) / p->amplifier.gain.si;
+      volts[k] = dea_protocol_value(protocol, (double)(i + k) / protocol->rate_Hz.si) /
+                 protocol->amplifier.gain.si;
     }
     status = bench->type->put(context, bench, volts, now);
     status = status == DEA_OK ? bench->type->get(context, bench, 0.1, &sink) : status;
@@ -97,21 +98,18 @@ static dea_status play(struct dea_context *context, const struct dea_protocol *p
   return status;
 }
 
-static struct dea_protocol *bench_protocol(const char *text)
+static void bench_protocol(const char *text)
 {
-  struct dea_protocol *p;
   write_in_folder("design.yaml", VISCOUS_DESIGN);
   write_in_folder("protocol.yaml", text);
   dea_finding_clear(ctx);
-  if (dea_protocol_read(ctx, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p) !=
-      DEA_OK) {
+  if (protocol_read(in_folder("protocol.yaml"), NULL, 0) != DEA_OK) {
     print_findings(ctx);
     fail_msg("%s", text);
   }
-  return p;
 }
 
-static void played(const struct dea_protocol *p, size_t block, struct record *r)
+static void played(size_t block, struct record *r)
 {
   if (play(ctx, p, block, r) != DEA_OK) {
     print_findings(ctx);
@@ -120,15 +118,14 @@ static void played(const struct dea_protocol *p, size_t block, struct record *r)
 }
 
 /* Value of an input at a sample, as the protocol says. */
-static double value(const struct dea_protocol *p, const struct record *r, size_t sample,
-                    size_t input)
+static double value(const struct record *r, size_t sample, size_t input)
 {
   return r->volts[sample * r->inputs + input] * p->inputs[input].per_volt +
          p->inputs[input].at_zero;
 }
 
 /* Half a step of the converter, in the quantity. */
-static double half_step(const struct dea_protocol *p, size_t input)
+static double half_step(size_t input)
 {
   return 0.5 * fabs(p->inputs[input].per_volt) * 2 * p->inputs[input].range_V.si / 65536;
 }
@@ -174,32 +171,30 @@ static struct dea_load_point point_at(const struct dea_curve *curve, double time
 
 TEST(test_truth_is_the_model)
 {
-  struct dea_protocol *p =
-      bench_protocol(HEAD IDEAL "waveform: " WAVE "\nsim: {" QUIET ", profile_points: 0}\n");
+  bench_protocol(HEAD IDEAL "waveform: " WAVE "\nsim: {" QUIET ", profile_points: 0}\n");
   struct record r;
-  played(p, 100, &r);
+  played(100, &r);
   assert_int_equal(r.samples, 600);
   struct study model;
   study(&model);
   double charge_C = 0;
   for (size_t i = 0; i < r.samples; i++) {
     const struct dea_load_point point = point_at(model.curve, (double)i / 1000);
-    charge_C += value(p, &r, i, 1) * 1e-3;
-    assert_close(value(p, &r, i, 0), point.voltage_V, 0, half_step(p, 0) * 1.001);
-    assert_close(value(p, &r, i, 2), point.centre_z_m, 5e-6, half_step(p, 2) * 1.001);
-    assert_close(value(p, &r, i, 3), point.force_N, 2e-5, half_step(p, 3) * 1.001);
-    assert_close(charge_C, point.charge_C, 1e-5, (double)(i + 1) * half_step(p, 1) * 1e-3);
+    charge_C += value(&r, i, 1) * 1e-3;
+    assert_close(value(&r, i, 0), point.voltage_V, 0, half_step(0) * 1.001);
+    assert_close(value(&r, i, 2), point.centre_z_m, 5e-6, half_step(2) * 1.001);
+    assert_close(value(&r, i, 3), point.force_N, 2e-5, half_step(3) * 1.001);
+    assert_close(charge_C, point.charge_C, 1e-5, (double)(i + 1) * half_step(1) * 1e-3);
   }
   assert_true(point_at(model.curve, 0.05).centre_z_m > 1e-3); // it did move
   dea_result_destroy(ctx, model.result);
   dea_device_destroy(ctx, model.device);
   dea_design_destroy(ctx, model.design);
   free_record(&r);
-  dea_protocol_destroy(ctx, p);
 }
 
 /* What is true at the first samples of a protocol: a bench of its own plays it. */
-static void play_truth(const struct dea_protocol *p, size_t count, struct dea_sim_state *truth)
+static void play_truth(size_t count, struct dea_sim_state *truth)
 {
   const struct dea_sim_settings settings = {.model = "lumped",
                                             .breakdown_V = (double)NAN,
@@ -216,14 +211,14 @@ static void play_truth(const struct dea_protocol *p, size_t count, struct dea_si
 }
 
 /* Mean and standard deviation of what an input says beyond the truth. */
-static void statistics(const struct dea_protocol *p, const struct record *r,
-                       const struct dea_sim_state *truth, size_t input, double out[2])
+static void statistics(const struct record *r, const struct dea_sim_state *truth, size_t input,
+                       double out[2])
 {
   double sum = 0, square = 0, n = (double)r->samples;
   for (size_t i = 0; i < r->samples; i++) {
     const double due[4] = {truth[i].output_V, truth[i].current_A, truth[i].centre_z_m,
                            truth[i].force_N};
-    double error = value(p, r, i, input) - due[input];
+    double error = value(r, i, input) - due[input];
     sum += error;
     square += error * error;
   }
@@ -236,22 +231,22 @@ static void statistics(const struct dea_protocol *p, const struct record *r,
 TEST(test_noise_is_what_was_asked)
 {
   static const double sigma[4] = {20, 2e-6, 5e-6, 1e-3};
-  struct dea_protocol *p = bench_protocol(
-      HEAD IDEAL "waveform: " LONG_WAVE "\nsim: {voltage_noise: 20 V, current_noise: 2 uA, "
-                 "displacement_noise: 5 um, force_noise: 1 mN, profile_noise: 3 um, "
-                 "outliers: 2 %, missing: 3 %, tilt: 0.5 degree, profile_points: 200, "
-                 "frame_rate: 10 Hz, displacement_drift: 1 um/s, force_offset: 3 mN}\n");
+  bench_protocol(HEAD IDEAL "waveform: " LONG_WAVE
+                            "\nsim: {voltage_noise: 20 V, current_noise: 2 uA, "
+                            "displacement_noise: 5 um, force_noise: 1 mN, profile_noise: 3 um, "
+                            "outliers: 2 %, missing: 3 %, tilt: 0.5 degree, profile_points: 200, "
+                            "frame_rate: 10 Hz, displacement_drift: 1 um/s, force_offset: 3 mN}\n");
   struct record r;
-  played(p, 1000, &r);
+  played(1000, &r);
   size_t n = r.samples;
   assert_int_equal(n, 10000);
   struct dea_sim_state *truth = malloc(n * sizeof *truth);
-  play_truth(p, n, truth);
+  play_truth(n, truth);
   assert_true(truth[0].output_V == 0 && truth[1].output_V == 3000 && truth[9].time_s == 0.009);
   for (size_t k = 0; k < 4; k++) {
-    double found[2], step = 2 * half_step(p, k), drift = k == 2 ? 10e-6 / sqrt(12) : 0;
+    double found[2], step = 2 * half_step(k), drift = k == 2 ? 10e-6 / sqrt(12) : 0;
     double due = sqrt(sigma[k] * sigma[k] + step * step / 12 + drift * drift);
-    statistics(p, &r, truth, k, found);
+    statistics(&r, truth, k, found);
     assert_close(found[1], due, 0.03, 0); // of 10000 samples: 0.7 % is one sigma
     double mean = k == 2 ? 5e-6 : k == 3 ? 3e-3 : 0;
     assert_close(found[0], mean, 0, 4 * sigma[k] / 100);
@@ -283,7 +278,6 @@ TEST(test_noise_is_what_was_asked)
   assert_close((double)outliers / (double)(frames * r.points), 0.02 * 0.97, 0.15, 0);
   free(truth);
   free_record(&r);
-  dea_protocol_destroy(ctx, p);
 }
 
 /* One seed gives one recording, however it is read; another seed another one. */
@@ -295,9 +289,8 @@ TEST(test_seeds)
                                                   "\nsim: {seed: 8, lost: 5 %}\n"};
   struct record r[3];
   for (int k = 0; k < 3; k++) {
-    struct dea_protocol *p = bench_protocol(texts[k]);
-    played(p, k == 1 ? 37 : 600, &r[k]);
-    dea_protocol_destroy(ctx, p);
+    bench_protocol(texts[k]);
+    played(k == 1 ? 37 : 600, &r[k]);
   }
   size_t lost = 0, same = 0;
   assert_true(r[0].samples == 600 && r[1].samples == 600);
@@ -317,60 +310,55 @@ TEST(test_seeds)
 /* A jump of the amplifier takes as long as its limits say. */
 TEST(test_limits)
 {
-  struct dea_protocol *p = bench_protocol(
-      HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, slew_limit: 1 V/us}\nrate: 100 kHz\n"
-           "waveform: {kind: constant, voltage: 4 kV, duration: 6 ms}\n"
-           "sim: {" QUIET ", profile_points: 0}\n");
+  bench_protocol(HEAD
+                 "amplifier: {gain: 1000, max_voltage: 10 kV, slew_limit: 1 V/us}\nrate: 100 kHz\n"
+                 "waveform: {kind: constant, voltage: 4 kV, duration: 6 ms}\n"
+                 "sim: {" QUIET ", profile_points: 0}\n");
   struct record r;
-  played(p, 600, &r);
+  played(600, &r);
   for (size_t i = 0; i < r.samples; i++) { // 10 us a sample: 10 V
-    assert_close(value(p, &r, i, 0), fmin(10 * (double)i, 4000), 0, 2 * half_step(p, 0));
+    assert_close(value(&r, i, 0), fmin(10 * (double)i, 4000), 0, 2 * half_step(0));
   }
   free_record(&r);
-  dea_protocol_destroy(ctx, p);
-  p = bench_protocol(
+  bench_protocol(
       HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 20 uA}\nrate: 100 kHz\n"
            "waveform: {kind: constant, voltage: 4 kV, duration: 12 ms}\n"
            "sim: {" QUIET ", profile_points: 0}\n");
-  played(p, 1200, &r);
+  played(1200, &r);
   double charge_C = 0;
   for (size_t i = 0; i < r.samples; i++) {
-    charge_C += value(p, &r, i, 1) * 1e-5;
-    assert_true(value(p, &r, i, 1) <= 20e-6 + 2 * half_step(p, 1));
-    assert_true(value(p, &r, i, 0) <= 4000 + half_step(p, 0));
+    charge_C += value(&r, i, 1) * 1e-5;
+    assert_true(value(&r, i, 1) <= 20e-6 + 2 * half_step(1));
+    assert_true(value(&r, i, 0) <= 4000 + half_step(0));
   }
   // some 30 pF at 4 kV: 0.13 uC, which 20 uA bring in 6 ms
-  assert_true(value(p, &r, 300, 0) < 3900 && value(p, &r, r.samples - 1, 0) > 3990);
+  assert_true(value(&r, 300, 0) < 3900 && value(&r, r.samples - 1, 0) > 3990);
   assert_close(charge_C, 32.5e-12 * 4000, 0.03, 0);
   free_record(&r);
-  dea_protocol_destroy(ctx, p);
 }
 
 /* From its breakdown voltage on the film is a short circuit; discharges bring their charge. */
 TEST(test_breakdown_and_discharges)
 {
-  struct dea_protocol *p =
-      bench_protocol(HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 5 mA}\n"
-                          "waveform: {kind: ramp, to: 5 kV, duration: 1 s}\n"
-                          "sim: {" QUIET ", breakdown_voltage: 3 kV, profile_points: 0}\n");
+  bench_protocol(HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 5 mA}\n"
+                      "waveform: {kind: ramp, to: 5 kV, duration: 1 s}\n"
+                      "sim: {" QUIET ", breakdown_voltage: 3 kV, profile_points: 0}\n");
   struct record r;
-  played(p, 1000, &r);
-  assert_true(value(p, &r, 590, 0) > 2900 && value(p, &r, 590, 1) < 1e-6);
-  assert_true(value(p, &r, 610, 0) < 100 && value(p, &r, 610, 1) > 4.9e-3);
-  assert_close(value(p, &r, 999, 2), 0, 0, half_step(p, 2) * 1.01);
+  played(1000, &r);
+  assert_true(value(&r, 590, 0) > 2900 && value(&r, 590, 1) < 1e-6);
+  assert_true(value(&r, 610, 0) < 100 && value(&r, 610, 1) > 4.9e-3);
+  assert_close(value(&r, 999, 2), 0, 0, half_step(2) * 1.01);
   free_record(&r);
-  dea_protocol_destroy(ctx, p);
-  p = bench_protocol(HEAD IDEAL "waveform: " LONG_WAVE "\nsim: {" QUIET
-                                ", discharge_rate: 10 Hz, discharge_voltage: 2 kV, "
-                                "discharge_charge: 40 nC, profile_points: 0}\n");
-  played(p, 1000, &r);
+  bench_protocol(HEAD IDEAL "waveform: " LONG_WAVE "\nsim: {" QUIET
+                            ", discharge_rate: 10 Hz, discharge_voltage: 2 kV, "
+                            "discharge_charge: 40 nC, profile_points: 0}\n");
+  played(1000, &r);
   size_t spikes = 0;
   for (size_t i = 10; i < r.samples; i++) {
-    spikes += value(p, &r, i, 1) > 35e-6 ? 1U : 0U;
+    spikes += value(&r, i, 1) > 35e-6 ? 1U : 0U;
   }
   assert_true(spikes > 70 && spikes < 130); // 100 in 10 s
   free_record(&r);
-  dea_protocol_destroy(ctx, p);
 }
 
 /* Some minutes of a life test by ten samples a second: each is a jump of 50 V, which the
@@ -385,24 +373,23 @@ TEST(test_slow_wave)
        "sim: {" QUIET ", profile_points: 0" end "}\n"
   static const char *const lives[] = {LIFE(""), LIFE(", breakdown_time: 200 s")};
   for (int k = 0; k < 2; k++) {
-    struct dea_protocol *p = bench_protocol(lives[k]);
+    bench_protocol(lives[k]);
     struct record r;
     size_t whole = 0;
-    played(p, 1000, &r);
-    while (whole < r.samples && value(p, &r, whole, 1) < 1e-4) {
+    played(1000, &r);
+    while (whole < r.samples && value(&r, whole, 1) < 1e-4) {
       whole++;
     }
     assert_true(k == 0 ? whole == 6000 : whole > 2000 && whole < 2050);
     free_record(&r);
-    dea_protocol_destroy(ctx, p);
   }
 }
 
 /* In real time it takes as long as the protocol. */
 TEST(test_real_pace)
 {
-  struct dea_protocol *p = bench_protocol(HEAD IDEAL "waveform: {kind: constant, voltage: 1 kV, "
-                                                     "duration: 50 ms}\nsim: {pace: real}\n");
+  bench_protocol(HEAD IDEAL "waveform: {kind: constant, voltage: 1 kV, "
+                            "duration: 50 ms}\nsim: {pace: real}\n");
   struct dea_instrument *bench;
   struct record r = {.inputs = 4, .points = 320};
   static double volts[50], capacity[50 * 4 + 4], z_m[320 * 50], frame_s[50];
@@ -423,7 +410,6 @@ TEST(test_real_pace)
   assert_int_equal(r.samples, 50);
   bench->type->stop(ctx, bench);
   bench->type->close(ctx, bench);
-  dea_protocol_destroy(ctx, p);
 }
 
 TEST(test_errors)
@@ -440,7 +426,7 @@ TEST(test_errors)
       {"dea-protocol: 1\n" IDEAL "waveform: " WAVE "\nsim: {kind: sim}\n", "needs a film", 4},
   };
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-    struct dea_protocol *p = bench_protocol(wrong[i].text);
+    bench_protocol(wrong[i].text);
     struct dea_instrument *bench;
     assert_int_equal(dea_instrument_open(ctx, &p->sim, p, &bench), DEA_E_DESIGN);
     assert_null(bench);
@@ -449,27 +435,26 @@ TEST(test_errors)
       print_findings(ctx);
       fail_msg("no '%s'", wrong[i].part);
     }
-    dea_protocol_destroy(ctx, p);
   }
 }
 
 static dea_status play_short(struct dea_context *context)
 {
-  struct dea_protocol *p;
+  struct dea_protocol *own;
   struct record r = {0};
   dea_status status =
-      dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p);
-  status = status == DEA_OK ? play(context, p, 10, &r) : status;
-  dea_protocol_destroy(context, p);
+      dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &own);
+  status = status == DEA_OK ? play(context, own, 10, &r) : status;
+  dea_protocol_destroy(context, own);
   free_record(&r);
   return status;
 }
 
 TEST(test_memory)
 {
-  dea_protocol_destroy(ctx, bench_protocol(HEAD IDEAL "waveform: {kind: constant, voltage: 1 kV, "
-                                                      "duration: 30 ms}\n"));
+  bench_protocol(HEAD IDEAL "waveform: {kind: constant, voltage: 1 kV, "
+                            "duration: 30 ms}\n");
   assert_true(failing_ends(play_short, DEA_OK) > 10); // there was something to fail
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, protocol_tear_down)

@@ -100,21 +100,20 @@ static void play(enum lie lie, struct trek *t, struct dea_drive_report *report, 
            "OFST,%%g\",\n     setup: [\"C1:BSWV WVTP,DC,OFST,0\", \"C1:OUTP ON\"], output_off: "
            "\"C1:OUTP OFF\", queue: 5 s, behind: 5 s}\n",
            generator.port);
-  struct dea_protocol *protocol = good_protocol(ctx, text);
+  good_protocol(text);
   struct dea_instrument *player;
-  assert_int_equal(dea_instrument_open(ctx, &protocol->instruments[0], protocol, &player), DEA_OK);
+  assert_int_equal(dea_instrument_open(ctx, &p->instruments[0], p, &player), DEA_OK);
   *t = (struct trek){.common = {.type = &trek_type, .roles = DEA_READS_INPUTS},
                      .generator = &generator,
                      .lie = lie};
   struct dea_instrument *all[2] = {player, &t->common};
   struct dea_drive_bench bench = {all, 2, 0.3, 3, NULL, NULL, 0};
   unlink(in_folder("trek.h5"));
-  *status = dea_drive_play(ctx, protocol, &bench, in_folder("trek.h5"), report);
+  *status = dea_drive_play(ctx, p, &bench, in_folder("trek.h5"), report);
   trek_follow(t);
   print_message("%d: %s, %g V of the amplifier; %s\n", (int)lie, dea_zero_name(report->zero.state),
                 t->output_V, report->ended);
   player->type->close(ctx, player);
-  dea_protocol_destroy(ctx, protocol);
   supply_stop(&generator);
 }
 
@@ -148,4 +147,4 @@ TEST(test_monitor_that_lies)
   }
 }
 
-TESTS(set_up, tear_down)
+TESTS(set_up, protocol_tear_down)

@@ -3,19 +3,6 @@
 // ctest: supply
 #include "supply_drive.h"
 
-/* Whether the supply was at 0 V when dea said so, and stayed there. */
-static void check_said(struct supply *s, int code)
-{
-  double volts = supply_volts(s);
-  (void)supply_highest(s);
-  dea_clock_wait(2); // what it has in its queue
-  double later_V = supply_highest(s);
-  if (supply_said_zero() && !(volts <= supply_zero_V && later_V <= supply_zero_V)) {
-    fail_msg("'at 0 V' and exit code %d, with %.0f V at the end and %.0f V later", code, volts,
-             later_V);
-  }
-}
-
 /* Commands that take 0.4 s each, which are sent every 20 ms: a queue that grows. */
 TEST(test_slow_supply)
 {
@@ -25,7 +12,7 @@ TEST(test_slow_supply)
   supply_start(&s);
   supply_protocol(&s, 3, SUPPLY_MEASURES);
   int code = supply_wait(supply_arm("slow.h5"), 30);
-  check_said(&s, code);
+  supply_check_said(&s, code);
   assert_true(code == 0 ? supply_said_zero() : code == 6);
   supply_stop(&s);
 }
@@ -38,8 +25,6 @@ static int fault_above(struct supply *s, const char *file, double volts, enum su
   atomic_store(&s->fault, fault);
   return supply_wait(child, 20);
 }
-
-static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
 
 /* The output stays up: that is not known, is said, is kept, and ends with a supply that answers. */
 TEST(test_hung_supply)
@@ -57,12 +42,12 @@ TEST(test_hung_supply)
                   "supply off");
   command_prints("recording hung.h5", 0, "output         not known to be at 0 V (no answer");
   // the next program knows, while the supply hangs and afterwards
-  assert_int_equal(supply_run_dea(zero, 20), 6);
+  assert_int_equal(supply_run_dea(supply_zero, 20), 6);
   assert_contains(command_out, "not known to be at 0 V");
   atomic_store(&s.fault, SUPPLY_GOOD);
   assert_int_equal(supply_wait(supply_arm("next.h5"), 20), 6);
   assert_contains(command_err, "did not end at 0 V as far as is known");
-  assert_int_equal(supply_run_dea(zero, 20), 0);
+  assert_int_equal(supply_run_dea(supply_zero, 20), 0);
   assert_contains(command_out, "output            at 0 V (0 V read back)");
   assert_true(supply_volts(&s) <= supply_zero_V);
   supply_protocol(&s, 1, SUPPLY_MEASURES);
@@ -83,7 +68,7 @@ TEST(test_other_faults)
     supply_start(&s);
     supply_protocol(&s, 5, SUPPLY_MEASURES);
     int code = fault_above(&s, "other.h5", 500, faults[i]);
-    check_said(&s, code);
+    supply_check_said(&s, code);
     assert_int_equal(code, 6);
     assert_false(supply_said_zero());
     supply_stop(&s);
@@ -94,7 +79,6 @@ TEST(test_other_faults)
  * to be at 0 V, to `--zero` neither, until somebody says that they have looked. */
 TEST(test_meter_that_shows_0_V)
 {
-  static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
   static const struct supply_wrong blind = {.blind = true},
                                    stays = {.blind = true, .latched = true}, good = {0};
   static struct supply s;
@@ -110,12 +94,11 @@ TEST(test_meter_that_shows_0_V)
   assert_false(supply_said_zero());
   assert_contains(command_out, "(0 V read back; it had measured another voltage than was set)");
   assert_contains(command_err, "its guard goes on for 10 min");
-  assert_int_equal(supply_run_dea(zero, 20), 6);
+  assert_int_equal(supply_run_dea(supply_zero, 20), 6);
   assert_false(supply_said_zero());
   supply_go_wrong(&s, &good);
-  assert_int_equal(supply_run_dea(checked, 20), 0);
-  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
-  supply_end_guards(0);
+  supply_check_zero(&s, supply_checked);
+  supply_end_guards();
   supply_stop(&s);
 }
 
@@ -133,6 +116,17 @@ TEST(test_without_measure)
   supply_stop(&s);
 }
 
+/* A supply that was left at 2 kV, and a protocol for it. */
+static void left_up(struct supply *s, struct supply as)
+{
+  *s = as;
+  s->on = true;
+  s->set_V = 2000;
+  supply_start(s);
+  supply_protocol(s, 1, SUPPLY_MEASURES);
+  assert_true(supply_reaches(s, 1900, 10));
+}
+
 /* One that does not obey, and answers its 2 kV in words that begin with "2". */
 TEST(test_other_words_for_volts)
 {
@@ -143,15 +137,9 @@ TEST(test_other_words_for_volts)
                {" V", true},   {";2000", false}, {"\r2000", false}};
   static struct supply s;
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
-    s = (struct supply){.deaf = true,
-                        .on = true,
-                        .set_V = 2000,
-                        .behind = words[i].behind,
-                        .comma = words[i].comma};
-    supply_start(&s);
-    supply_protocol(&s, 1, SUPPLY_MEASURES);
-    assert_true(supply_reaches(&s, 1900, 10));
-    int code = supply_run_dea(zero, 20);
+    left_up(&s, (struct supply){
+                    .wrong.deaf = true, .behind = words[i].behind, .comma = words[i].comma});
+    int code = supply_run_dea(supply_zero, 20);
     assert_true(code == 6 && !supply_said_zero() && supply_volts(&s) > 1900);
     supply_stop(&s);
   }
@@ -160,61 +148,34 @@ TEST(test_other_words_for_volts)
 /* A protocol that calls anything 0 V: `--arm` refuses it, and `--zero` believes it no more. */
 TEST(test_much_that_is_called_zero)
 {
-  static const char *const called[] = {"drive", "p.yaml", "--zero", "--set", "safety.at_zero=9 kV",
-                                       NULL};
-  static const char *const arm[] = {"drive",
-                                    "p.yaml",
-                                    "--arm",
-                                    "--set",
-                                    "safety.at_zero=9 kV",
-                                    "--set",
-                                    "amplifier.max_voltage=1 MV",
-                                    NULL};
   static struct supply s;
-  s = (struct supply){.deaf = true, .on = true, .set_V = 2000};
-  supply_start(&s);
-  supply_protocol(&s, 1, SUPPLY_MEASURES);
-  assert_true(supply_reaches(&s, 1900, 10));
-  assert_int_equal(supply_run_dea(called, 20), 6);
+  left_up(&s, (struct supply){.wrong.deaf = true});
+  assert_int_equal(supply_run_dea("drive p.yaml --zero --set 'safety.at_zero=9 kV'", 20), 6);
   assert_contains(command_out, "not known to be at 0 V (2e+03 V read back)");
-  assert_int_equal(supply_run_dea(arm, 20), 6); // more than gain and control voltage make
+  // more than gain and control voltage make
+  assert_int_equal(supply_run_dea("drive p.yaml --arm --set 'safety.at_zero=9 kV' --set "
+                                  "'amplifier.max_voltage=1 MV'",
+                                  20),
+                   6);
   assert_contains(command_err, "refused: 9000 V would be called 0 V; at most 100 V are");
   supply_stop(&s);
 }
 
-/* 0 V does not wait for what the film would do, nor for a design that is there. */
-TEST(test_zero_without_its_design)
-{
-  static const char *const wrong[] = {"drive", "p.yaml", "--zero", "--set", "design=no.yaml", NULL};
-  static struct supply s;
-  s = (struct supply){.on = true, .set_V = 2000};
-  supply_start(&s);
-  supply_protocol(&s, 1, SUPPLY_MEASURES);
-  assert_true(supply_reaches(&s, 1900, 10));
-  assert_int_equal(supply_run_dea(wrong, 20), 0);
-  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
-  supply_stop(&s);
-}
-
-/* Nor does 0 V wait for the specimen's file, or that of a waveform. */
+/* 0 V does not wait for what the film would do, nor for a design that is there, for a specimen's
+ * file, or that of a waveform. */
 TEST(test_zero_without_other_files)
 {
-  static const char *const plain[] = {"drive", "p.yaml", "--zero", NULL};
-  static const char *const table[] = {
-      "drive", "p.yaml", "--zero", "--set", "waveform={kind: table, file: gone.csv}", NULL};
   static struct supply s;
   char text[4096];
-  s = (struct supply){.on = true, .set_V = 2000};
-  supply_start(&s);
-  supply_protocol(&s, 1, SUPPLY_MEASURES);
-  assert_true(supply_reaches(&s, 1900, 10));
-  assert_int_equal(supply_run_dea(table, 20), 0);
-  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  left_up(&s, (struct supply){0});
+  supply_check_zero(&s, "drive p.yaml --zero --set design=no.yaml");
+  supply_stop(&s);
+  left_up(&s, (struct supply){0});
+  supply_check_zero(&s, "drive p.yaml --zero --set 'waveform={kind: table, file: gone.csv}'");
   command_read("p.yaml", command_out);
   snprintf(text, sizeof text, "%.4000sspecimen: gone.yaml\n", command_out);
   command_write("p.yaml", text);
-  assert_int_equal(supply_run_dea(plain, 20), 0);
-  assert_true(supply_said_zero());
+  supply_check_zero(&s, supply_zero);
   supply_stop(&s);
 }
 
@@ -250,16 +211,13 @@ TEST(test_hangs_before_anything_is_played)
 TEST(test_zero_without_a_place)
 {
   static struct supply s;
-  s = (struct supply){.on = true, .set_V = 2000};
-  supply_start(&s);
-  supply_protocol(&s, 1, SUPPLY_MEASURES);
-  assert_true(supply_reaches(&s, 1900, 10));
+  left_up(&s, (struct supply){0});
   char state_folder[600], kept[600];
   snprintf(state_folder, sizeof state_folder, "%s/state", command_folder);
   snprintf(kept, sizeof kept, "%s/kept", command_folder);
   bool there = rename(state_folder, kept) == 0;
   command_write("state", "a file where a folder should be");
-  int code = supply_run_dea(zero, 20);
+  int code = supply_run_dea(supply_zero, 20);
   double volts = supply_volts(&s);
   assert_true(remove(state_folder) == 0 && (!there || rename(kept, state_folder) == 0));
   assert_true(volts <= supply_zero_V);
@@ -277,10 +235,9 @@ TEST(test_checked_by_somebody)
   supply_protocol(&s, 5, "");
   assert_int_equal(fault_above(&s, "c.h5", 500, SUPPLY_HANGS), 6);
   atomic_store(&s.fault, SUPPLY_GOOD);
-  assert_int_equal(supply_run_dea(zero, 20), 6); // commanded only
+  assert_int_equal(supply_run_dea(supply_zero, 20), 6); // commanded only
   assert_contains(command_err, "--zero --checked");
-  static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
-  assert_int_equal(supply_run_dea(checked, 20), 0);
+  assert_int_equal(supply_run_dea(supply_checked, 20), 0);
   supply_protocol(&s, 1, "");
   assert_int_equal(supply_wait(supply_arm("c.h5"), 20), 0);
   supply_stop(&s);

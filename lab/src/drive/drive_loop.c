@@ -495,9 +495,8 @@ static void begin_clock(struct loop *loop)
 {
   loop->started_s = dea_clock_s();
   for (size_t i = 0; i < loop->count; i++) {
-    struct source *source = &loop->sources[i];
-    if (source != loop->player && source->instrument->type->set_clock != NULL) {
-      source->instrument->type->set_clock(source->instrument);
+    if (&loop->sources[i] != loop->player) {
+      loop->sources[i].instrument->start_s = loop->started_s;
     }
   }
 }

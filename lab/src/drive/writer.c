@@ -172,79 +172,54 @@ static double *reserve(struct dea_context *ctx, struct dea_writer *w, enum kind 
   return w->numbers + at;
 }
 
-static void hand_over(struct dea_writer *w)
+/* Some numbers, and more behind them. */
+static dea_status add(struct dea_context *ctx, struct dea_writer *w, enum kind kind, size_t channel,
+                      const double *numbers, size_t count, const double *more, size_t more_count)
 {
+  double *to = reserve(ctx, w, kind, channel, count + more_count);
+  if (to == NULL) {
+    return dea_context_status(ctx);
+  }
+  memcpy(to, numbers, count * sizeof *to);
+  if (more_count > 0) {
+    memcpy(to + count, more, more_count * sizeof *to);
+  }
   pthread_cond_signal(&w->came);
   pthread_mutex_unlock(&w->lock);
+  return DEA_OK;
 }
 
 dea_status dea_writer_add(struct dea_context *ctx, struct dea_writer *writer, size_t channel,
                           const double *values, size_t count)
 {
-  double *to = reserve(ctx, writer, SAMPLES, channel, count);
-  if (to == NULL) {
-    return dea_context_status(ctx);
-  }
-  memcpy(to, values, count * sizeof *values);
-  hand_over(writer);
-  return DEA_OK;
+  return add(ctx, writer, SAMPLES, channel, values, count, NULL, 0);
 }
 
 dea_status dea_writer_add_timed(struct dea_context *ctx, struct dea_writer *writer, size_t channel,
                                 double time_s, double value)
 {
-  double *to = reserve(ctx, writer, READING, channel, 2);
-  if (to == NULL) {
-    return dea_context_status(ctx);
-  }
-  to[0] = time_s;
-  to[1] = value;
-  hand_over(writer);
-  return DEA_OK;
+  return add(ctx, writer, READING, channel, &time_s, 1, &value, 1);
 }
 
 dea_status dea_writer_add_profile(struct dea_context *ctx, struct dea_writer *writer, double time_s,
                                   const double *z_m, size_t points)
 {
-  double *to = reserve(ctx, writer, FRAME, 0, points + 1);
-  if (to == NULL) {
-    return dea_context_status(ctx);
-  }
-  to[0] = time_s;
-  memcpy(to + 1, z_m, points * sizeof *z_m);
-  hand_over(writer);
-  return DEA_OK;
+  return add(ctx, writer, FRAME, 0, &time_s, 1, z_m, points);
 }
 
 dea_status dea_writer_add_cycle(struct dea_context *ctx, struct dea_writer *writer,
                                 const struct dea_recorded_cycle *cycle)
 {
-  double *to = reserve(ctx, writer, CYCLE, 0, 5);
-  if (to == NULL) {
-    return dea_context_status(ctx);
-  }
-  to[0] = (double)cycle->step;
-  to[1] = (double)cycle->number;
-  to[2] = cycle->start_s;
-  to[3] = cycle->end_s;
-  to[4] = cycle->level_V;
-  hand_over(writer);
-  return DEA_OK;
+  const double row[] = {(double)cycle->step, (double)cycle->number, cycle->start_s, cycle->end_s,
+                        cycle->level_V};
+  return add(ctx, writer, CYCLE, 0, row, 5, NULL, 0);
 }
 
 dea_status dea_writer_add_event(struct dea_context *ctx, struct dea_writer *writer,
                                 const struct dea_recorded_event *event)
 {
-  double *to = reserve(ctx, writer, EVENT, event->channel, 4);
-  if (to == NULL) {
-    return dea_context_status(ctx);
-  }
-  to[0] = event->time_s;
-  to[1] = (double)event->kind;
-  to[2] = event->value;
-  to[3] = event->limit;
-  hand_over(writer);
-  return DEA_OK;
+  const double row[] = {event->time_s, (double)event->kind, event->value, event->limit};
+  return add(ctx, writer, EVENT, event->channel, row, 4, NULL, 0);
 }
 
 // Begin and end ----------------------------------------------------------------------------------

@@ -1,12 +1,12 @@
 #include "film/film_of_design.h"
 
-#include "film/film_table.h"
-
 #include "material/plane.h"
 #include "model/model.h"
 #include "study/design_file.h"
+#include "study/observe.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { PATH_POINTS_MAX = 4000 };
 
@@ -20,9 +20,10 @@ struct film_model {
   const struct dea_design *design; // lent
   struct dea_device *device;       // owned
   const struct dea_model_type *type;
-  struct dea_model *model; // owned
-  bool by_monitor;         // it moves by `motion`; a table does so itself
-  struct dea_film_motion motion;
+  struct dea_model *model; // owned; NULL: of a check of what is no disc
+  bool by_monitor;         // it moves by a quantity of its monitors
+  struct dea_monitor_set monitors;
+  int column; // of that quantity; -1: none
 };
 
 static void destroy(struct dea_context *ctx, struct dea_bench_film *film)
@@ -68,7 +69,7 @@ static void close_model(struct dea_context *ctx, struct dea_bench_model *model)
   if (m->model != NULL) {
     m->type->destroy(ctx, m->model);
   }
-  dea_monitor_set_free(&m->motion.set);
+  dea_monitor_set_free(&m->monitors);
   dea_device_destroy(ctx, m->device);
   dea_free(ctx, m);
 }
@@ -91,22 +92,69 @@ static double reach_of(const struct dea_device *device)
   return reach;
 }
 
-/* Any device that moves by a monitor, and is as high everywhere: by model reduced, or at rest by a
- * table. */
-static dea_status build_any(struct dea_context *ctx, const char *monitor, bool reduced,
+/* The first monitor's z; -1: none. */
+static int first_height(const struct dea_monitor_set *set)
+{
+  for (size_t i = 0; i < set->count; i++) {
+    const struct dea_monitor_column *c = &set->columns[i];
+    if (c->source == DEA_OF_MONITOR && c->number == DEA_OBSERVED_Z) {
+      return c->column;
+    }
+  }
+  return -1;
+}
+
+/* Finds the monitor by which it moves. */
+static dea_status find_motion(struct dea_context *ctx, const char *monitor, struct film_model *m)
+{
+  DEA_TRY(ctx, dea_monitor_set_init(ctx, m->type, m->device, &m->monitors));
+  m->column = monitor != NULL ? dea_column_find(ctx, monitor) : first_height(&m->monitors);
+  if (monitor == NULL ||
+      (m->column >= 0 && strcmp(dea_column_at(ctx, m->column)->si_unit, "m") == 0)) {
+    return DEA_OK;
+  }
+  const char *nearest;
+  DEA_TRY(ctx, dea_column_nearest(ctx, monitor, &nearest));
+  return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is no displacement of a monitor of the film%s%.60s%s",
+                  monitor, nearest != NULL ? "; did you mean '" : "",
+                  nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+}
+
+/* Height of centre and fibre tips of the last point, where it moves by a monitor. */
+static dea_status read_motion(struct dea_context *ctx, struct film_model *m,
+                              struct dea_load_point *point)
+{
+  if (!m->by_monitor) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_monitor_set_read(ctx, &m->monitors, m->type, m->model, false, point));
+  const double z = m->column >= 0 ? dea_point_get(point, m->column) : NAN;
+  point->centre_z_m = point->fibre_tip_z_m = z;
+  point->monitors = NULL; // the set's
+  return DEA_OK;
+}
+
+/* Any device is as high everywhere, and moves by a monitor; in a check it is at rest, by model 3d.
+ */
+static dea_status build_any(struct dea_context *ctx, bool moves, const char *monitor,
                             struct film_model *m)
 {
   const struct dea_material *film = film_of(m->device);
   m->base.material = film != NULL ? film->name : "";
   m->base.frame_radius_m = m->base.fibre_tip_radius_m = reach_of(m->device);
-  if (reduced) {
-    m->by_monitor = true;
-    DEA_TRY(ctx, dea_model_create(ctx, m->type, m->design, m->device, &m->model));
-    return DEA_CHAIN(ctx, dea_film_motion_init(ctx, m->type, m->device, monitor, &m->motion));
+  if (!moves) {
+    m->type = dea_model_find("3d");
+    m->base.name = m->type->name;
+    return DEA_OK;
   }
-  m->base.name = "3d";
-  m->type = &dea_film_table_type;
-  return DEA_CHAIN(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->model));
+  if (m->type != dea_model_find("reduced")) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "the simulated film moves by a monitor, or is no disc, which model reduced "
+                    "knows: write 'sim: {model: reduced}'");
+  }
+  m->by_monitor = true;
+  DEA_TRY(ctx, dea_model_create(ctx, m->type, m->design, m->device, &m->model));
+  return DEA_CHAIN(ctx, find_motion(ctx, monitor, m));
 }
 
 static dea_status build(struct dea_context *ctx, bool moves, const char *monitor,
@@ -114,13 +162,7 @@ static dea_status build(struct dea_context *ctx, bool moves, const char *monitor
 {
   DEA_TRY(ctx, dea_device_build(ctx, m->design, &m->device));
   if (monitor != NULL || !m->device->disc) {
-    const bool reduced = moves && m->type == dea_model_find("reduced");
-    DEA_TRY(ctx, build_any(ctx, monitor, reduced, m));
-    return moves && !reduced
-               ? dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                                 "the simulated film is at rest at every moment, by a table of "
-                                 "model 3d: it does not creep")
-               : DEA_OK;
+    return DEA_CHAIN(ctx, build_any(ctx, moves, monitor, m));
   }
   struct dea_device *device = m->device;
   if (!moves) { // in a check the film knows neither, and need not say so
@@ -231,25 +273,23 @@ static dea_status pull_in(struct dea_context *ctx, struct dea_bench_model *model
       .max_points = PATH_POINTS_MAX,
   };
   *voltage_V = NAN;
-  if (m->type->path == NULL) { // `solve` says it
+  if (m->model == NULL) { // `solve` says it
     return DEA_OK;
   }
   return dea_model_path(ctx, m->type, m->model, &options, no_point, first_pull_in, voltage_V);
 }
 
-/* By a model of its own, of a table by what that is computed by. */
+/* By a model of its own. */
 static dea_status solve(struct dea_context *ctx, struct dea_bench_model *model, double voltage_V,
                         struct dea_bench_point *out)
 {
   const struct film_model *m = (struct film_model *)model;
-  const bool table = m->type->create == NULL;
-  const struct dea_model_type *type = table ? dea_model_find(m->type->name) : m->type;
   const struct dea_model_settings settings = dea_model_settings_of(m->design);
   struct dea_model *fresh;
   struct dea_load_point point;
-  DEA_TRY(ctx, type->create(ctx, m->device, table ? &settings : NULL, &fresh));
-  const dea_status status = type->solve(ctx, fresh, voltage_V, &point);
-  type->destroy(ctx, fresh);
+  DEA_TRY(ctx, m->type->create(ctx, m->device, m->model == NULL ? &settings : NULL, &fresh));
+  const dea_status status = m->type->solve(ctx, fresh, voltage_V, &point);
+  m->type->destroy(ctx, fresh);
   if (status == DEA_OK) {
     *out = complete(m, &point);
   }
@@ -269,9 +309,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_bench_model *model,
   };
   DEA_TRY(ctx, m->type->solve(ctx, m->model, 0, &point));
   DEA_TRY(ctx, dea_model_begin(ctx, m->type, m->model, &options, &point));
-  if (m->by_monitor) {
-    DEA_TRY(ctx, dea_film_motion_read(ctx, &m->motion, m->type, m->model, &point));
-  }
+  DEA_TRY(ctx, read_motion(ctx, m, &point));
   *out = complete(m, &point);
   return DEA_OK;
 }
@@ -283,9 +321,7 @@ static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model
   const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = source_V};
   struct dea_load_point point;
   dea_status status = dea_model_advance(ctx, m->type, m->model, &step, &point, error);
-  if (status == DEA_OK && m->by_monitor) {
-    status = dea_film_motion_read(ctx, &m->motion, m->type, m->model, &point);
-  }
+  status = status == DEA_OK ? read_motion(ctx, m, &point) : status;
   if (status == DEA_OK) {
     *out = complete(m, &point);
   }

@@ -1,6 +1,6 @@
 /* Files of other programs: read into a table of columns, which a mapping makes a recording of.
  *
- * A format is one file import_<name>.c and one line in import_list.h. */
+ * A format is one file import_<name>.c and an entry in the list of importers.c. */
 #pragma once
 
 #include "base/schema.h"
@@ -30,6 +30,11 @@ dea_status dea_importer_read(struct dea_context *ctx, const struct dea_importer 
  * by the caller, NULL on failure. */
 dea_status dea_table_read(struct dea_context *ctx, const char *file, const char *format,
                           struct dea_table **out);
+
+/* What a column may be by its name, whose words are in table/word_list.h: enum dea_channel_kind or
+ * one of these, the last of which is of another column, "z std". */
+enum { DEA_GUESS_TIME = -1, DEA_GUESS_NOTHING = -2, DEA_GUESS_UNCERTAINTY = -3 };
+int dea_guess_by_name(const char *name);
 
 /* What columns mean; read from YAML, or guessed from names and units. */
 struct dea_mapping;

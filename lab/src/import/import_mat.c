@@ -1,5 +1,6 @@
 /* MATLAB's .mat files. */
 #include "base/h5.h"
+#include "base/module.h"
 #include "import/mat.h"
 #include "table/titles.h"
 
@@ -7,11 +8,17 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HEADER_SIZE = 128, TAG_SIZE = 8, MATRIX = 14, COMPRESSED = 15, OLD_HEADER_SIZE = 20 };
+enum { HEADER_SIZE = 128, TAG_SIZE = 8, MATRIX = 14, COMPRESSED = 15 };
 enum { VERSION_5 = 0x100, VERSION_73 = 0x200 }; // as they stand in the file
+static const char module_file[] = "dea_matio_module.so";
+
+bool dea_mat_find(char *out, size_t size)
+{
+  return dea_module_find(module_file, out, size);
+}
 
 /* Version 5 and 7.3 begin with 116 bytes of text that say so, and a version and the mark "IM" or
- * "MI" at byte 124. Version 4 has no mark: its name decides. */
+ * "MI" at byte 124. */
 static bool recognise(const char *file, const unsigned char *head, size_t length)
 {
   bool marked =
@@ -28,12 +35,6 @@ static uint32_t integer(const unsigned char *at, bool big)
   return value;
 }
 
-static dea_status damaged(struct dea_context *ctx, const char *file, uint64_t at, bool longer)
-{
-  return dea_fail(ctx, DEA_E_IO, "'%s' is cut off or damaged: the variable at byte %llu %s", file,
-                  (unsigned long long)at, longer ? "is longer than the file" : "is none");
-}
-
 /* Version 5 is a row of variables, each with its length: libmatio takes one that is cut off for the
  * end of the file, and what is damaged as it comes. */
 static dea_status check_variables(struct dea_context *ctx, const char *file, FILE *stream, bool big)
@@ -48,42 +49,11 @@ static dea_status check_variables(struct dea_context *ctx, const char *file, FIL
                 fread(tag, 1, TAG_SIZE, stream) == TAG_SIZE;
     uint32_t type = good ? integer(tag, big) : 0, length = good ? integer(tag + 4, big) : 0;
     if (!good || (type != MATRIX && type != COMPRESSED) || length > size - at - TAG_SIZE) {
-      return damaged(ctx, file, at, good && length > size - at - TAG_SIZE);
+      bool longer = good && length > size - at - TAG_SIZE;
+      return dea_fail(ctx, DEA_E_IO, "'%s' is cut off or damaged: the variable at byte %llu %s",
+                      file, (unsigned long long)at, longer ? "is longer than the file" : "is none");
     }
     at += TAG_SIZE + length;
-  }
-  return DEA_OK;
-}
-
-/* Version 4: headers of five integers (type, rows, columns, complex, length of the name), the name,
- * the values. The type is MOPT in decimal: byte order (1: the most significant byte first, as the
- * integers themselves), nothing, form of a number, kind of matrix. */
-static dea_status check_old(struct dea_context *ctx, const char *file, FILE *stream)
-{
-  static const uint64_t sizes[] = {8, 4, 4, 2, 2, 1};
-  unsigned char head[OLD_HEADER_SIZE];
-  uint64_t at = 0, size = 0;
-  if (fseek(stream, 0, SEEK_END) == 0) {
-    size = (uint64_t)ftell(stream);
-  }
-  while (at < size) {
-    if (size - at < OLD_HEADER_SIZE || fseek(stream, (long)at, SEEK_SET) != 0 ||
-        fread(head, 1, OLD_HEADER_SIZE, stream) != OLD_HEADER_SIZE) {
-      return damaged(ctx, file, at, false);
-    }
-    bool big = integer(head, false) > 4052;
-    uint32_t order = integer(head, big) / 1000, type = integer(head, big) % 1000, form = type / 10;
-    uint64_t rows = integer(head + 4, big), columns = integer(head + 8, big);
-    uint64_t complex = integer(head + 12, big), name = integer(head + 16, big);
-    if (order != (big ? 1 : 0) || form > 5 || type % 10 > 2 || complex > 1 || name == 0) {
-      return damaged(ctx, file, at, false);
-    }
-    // both below 2^32
-    uint64_t left = size - at - OLD_HEADER_SIZE, count = rows * columns;
-    if (name > left || count > (left - name) / sizes[form] / (complex + 1)) {
-      return damaged(ctx, file, at, true);
-    }
-    at += OLD_HEADER_SIZE + name + count * sizes[form] * (complex + 1);
   }
   return DEA_OK;
 }
@@ -106,7 +76,7 @@ static dea_status check_file(struct dea_context *ctx, const char *file)
   if (stream == NULL) {
     return dea_fail(ctx, DEA_E_IO, "cannot open '%s'", file);
   }
-  dea_status status = DEA_OK;
+  dea_status status;
   size_t n = fread(head, 1, HEADER_SIZE, stream);
   bool big = n == HEADER_SIZE && memcmp(head + 126, "MI", 2) == 0;
   bool marked = big || (n == HEADER_SIZE && memcmp(head + 126, "IM", 2) == 0);
@@ -115,8 +85,10 @@ static dea_status check_file(struct dea_context *ctx, const char *file)
     status = check_variables(ctx, file, stream, big);
   } else if (version == VERSION_73) {
     status = check_new(ctx, file);
-  } else { // libmatio takes it for version 4, whatever its mark
-    status = check_old(ctx, file, stream);
+  } else { // libmatio would take it for version 4, whatever its mark
+    status =
+        dea_fail(ctx, DEA_E_IO,
+                 "'%s' is no .mat file of version 5 or 7.3; save it with '-v7' in MATLAB", file);
   }
   fclose(stream);
   return status;
@@ -142,8 +114,11 @@ static dea_status find_units(struct dea_context *ctx, struct dea_table *table)
 
 static dea_status read_mat(struct dea_context *ctx, const char *file, struct dea_table *out)
 {
+  const void *type = NULL;
   DEA_TRY(ctx, check_file(ctx, file));
-  DEA_TRY(ctx, dea_mat_read(ctx, file, out));
+  DEA_TRY(ctx, dea_module_open(ctx, module_file, "dea_matio_module", "what reads .mat files",
+                               "it is built when libmatio-dev is installed", &type));
+  DEA_TRY(ctx, ((const struct dea_mat_type *)type)->read(ctx, file, out));
   return find_units(ctx, out);
 }
 

@@ -4,7 +4,7 @@
  *   Sample Interval,4.000000e-04,,-0.499600000000,   2.01005,
  *
  * A file has one channel; those of one shot are joined. Files of later models (MSO, DPO, MDO) have
- * their lines above the numbers, as import_csv.c reads them. */
+ * their lines above the numbers, as format csv reads them. */
 #include "import/import.h"
 
 #include "base/text.h"

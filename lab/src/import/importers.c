@@ -4,38 +4,50 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "import/import_list.h"
+#include "table/csv_text.h"
 #include "table/text_file.h"
 
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#define IMPORTER_DECLARE(name) extern const struct dea_importer name;
-DEA_IMPORTER_LIST(IMPORTER_DECLARE)
-#undef IMPORTER_DECLARE
+static bool is_text(const char *file, const unsigned char *head, size_t length)
+{
+  (void)file;
+  return dea_text_file_is(head, length);
+}
 
-enum { HEAD_SIZE = 4096, NAMES_MAX = 16 };
+static const struct dea_importer dea_import_csv = {
+    .name = "csv",
+    .formats = "CSV and other text with lines of numbers",
+    .recognise = is_text,
+    .read_text = dea_table_read_text,
+};
+
+/* The first that recognises a file reads it. */
+extern const struct dea_importer dea_import_tdms, dea_import_lvm, dea_import_mat, dea_import_trios,
+    dea_import_comsol, dea_import_tektronix, dea_import_rigol;
+static const struct dea_importer *const all[] = {
+    &dea_import_tdms,   &dea_import_lvm,       &dea_import_mat,   &dea_import_trios,
+    &dea_import_comsol, &dea_import_tektronix, &dea_import_rigol, &dea_import_csv};
+enum { IMPORTERS = sizeof all / sizeof all[0] };
+
+enum { HEAD_SIZE = 4096 };
 // bytes of a file; it is read whole, and its numbers take about as much again
 static const size_t size_max = (size_t)4 << 30;
 
 const struct dea_importer *const *dea_importer_all(size_t *count)
 {
-#define IMPORTER_ROW(name) &name,
-  static const struct dea_importer *const all[] = {DEA_IMPORTER_LIST(IMPORTER_ROW)};
-#undef IMPORTER_ROW
-  *count = sizeof all / sizeof all[0];
+  *count = IMPORTERS;
   return all;
 }
 
 static dea_status find_format(struct dea_context *ctx, const char *format,
                               const struct dea_importer **out)
 {
-  size_t count;
-  const struct dea_importer *const *all = dea_importer_all(&count);
-  const char *names[NAMES_MAX];
+  const char *names[IMPORTERS];
   struct dea_text known = {.ctx = ctx};
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < IMPORTERS; i++) {
     if (strcmp(all[i]->name, format) == 0) {
       dea_text_free(&known);
       *out = all[i];
@@ -44,7 +56,7 @@ static dea_status find_format(struct dea_context *ctx, const char *format,
     names[i] = all[i]->name;
     dea_text_add(&known, "%s%s", i > 0 ? ", " : "", all[i]->name);
   }
-  const char *nearest = dea_nearest_name(format, names, count);
+  const char *nearest = dea_nearest_name(format, names, IMPORTERS);
   dea_status status = dea_fail(ctx, DEA_E_USAGE, "'%.60s' is not a format; %s%s%s", format,
                                nearest != NULL ? "did you mean '" : "known are ",
                                nearest != NULL ? nearest : known.data, nearest != NULL ? "'?" : "");
@@ -55,12 +67,10 @@ static dea_status find_format(struct dea_context *ctx, const char *format,
 static const struct dea_importer *recognise(const char *file, const unsigned char *head,
                                             size_t length)
 {
-  size_t count;
-  const struct dea_importer *const *all = dea_importer_all(&count);
   const size_t mark = length >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
   head += mark;
   length -= mark;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < IMPORTERS; i++) {
     if (all[i]->recognise(file, head, length)) {
       return all[i];
     }

@@ -1,12 +1,12 @@
 /* What each column of a table is for: as the mapping says, or as names and units make believe. */
 #include "base/text.h"
-#include "import/guess.h"
+#include "base/units.h"
 #include "import/mapping.h"
-#include "import/scale.h"
 #include "table/titles.h"
 #include "table/words.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { MATRIX_CHANNELS = 8 }; // more columns of one matrix are hardly channels
@@ -37,6 +37,109 @@ const char *dea_role_name(const struct dea_column_role *role)
   default:
     return "left";
   }
+}
+
+// Scales -----------------------------------------------------------------------------------------
+
+/* What a mapping says of a column's numbers; members may be NULL. */
+struct scale_text {
+  const struct dea_label *unit, *per_unit, *at_zero;
+};
+
+static bool is_given(const struct dea_label *label)
+{
+  return label != NULL && label->text[0] != '\0';
+}
+
+/* A whole text as a number without unit. */
+static bool bare_number(const char *text, double *value)
+{
+  struct dea_slice slice = {text, strlen(text)};
+  return dea_slice_number(slice, '.', value) && *value == *value;
+}
+
+/* A quantity of the mapping: "1 kV", or a number of the column's unit. */
+static dea_status read_quantity(struct dea_context *ctx, const struct dea_label *label,
+                                const char *key, const char *si, double unit, double *value,
+                                bool *good)
+{
+  char why[DEA_WHY_SIZE], example[40];
+  double number;
+  if (bare_number(label->text, &number)) {
+    *value = number * unit;
+    return DEA_OK;
+  }
+  snprintf(example, sizeof example, "1 %s", si);
+  const struct dea_measure due = {si[0] != '\0' ? si : "1", si[0] != '\0' ? example : "1"};
+  if (dea_units_read(ctx, label->text, due, value, why)) {
+    return DEA_OK;
+  }
+  *good = false;
+  if (why[0] == '\0') {
+    return dea_context_status(ctx);
+  }
+  return dea_finding_add(ctx, DEA_ERROR, label->location, "%s: %s", key, why);
+}
+
+/* Factor of the unit; 0: of another dimension than due, 1 without a unit. */
+static dea_status read_unit(struct dea_context *ctx, const struct dea_table_column *column,
+                            const char *si, const struct dea_label *given, double *factor)
+{
+  const char *unit = is_given(given) ? given->text : column->unit;
+  *factor = 1;
+  if (unit[0] == '\0' || si[0] == '\0') {
+    return DEA_OK;
+  }
+  const char *found = dea_title_unit(ctx, unit, factor);
+  if (found == NULL && dea_context_status(ctx) != DEA_OK) {
+    return dea_context_status(ctx);
+  }
+  if (found == NULL || strcmp(found, si) != 0) {
+    *factor = 0;
+  }
+  return DEA_OK;
+}
+
+/* SI value = value * factor + offset, from the column's unit and what the mapping says. si: the
+ * unit due, "": none in particular. Errors are findings at the mapping's values, or at `location`
+ * for the file's unit; *good false then. */
+static dea_status find_scale(struct dea_context *ctx, const struct dea_table_column *column,
+                             const char *si, const struct scale_text *text,
+                             struct dea_location location, double *factor, double *offset,
+                             bool *good)
+{
+  double unit, number;
+  *good = true;
+  *offset = 0;
+  dea_context_clear(ctx);
+  DEA_TRY(ctx, read_unit(ctx, column, si, text->unit, &unit));
+  bool says = is_given(text->per_unit) && !bare_number(text->per_unit->text, &number);
+  if (unit == 0 && is_given(text->unit)) {
+    *good = false;
+    return dea_finding_add(ctx, DEA_ERROR, text->unit->location,
+                           "'%.40s' is no unit that becomes %s; what 1 in the column stands for is "
+                           "said by per_unit, such as '1 %s'",
+                           text->unit->text, si, si);
+  }
+  if (unit == 0 && !says) {
+    *good = false;
+    return dea_finding_add(ctx, DEA_ERROR, location,
+                           "the column '%.60s' is in '%.40s', not in %s: say what 1 of that stands "
+                           "for in a mapping (per_unit: 1 %s)",
+                           column->name, column->unit, si, si);
+  }
+  *factor = unit;
+  if (is_given(text->per_unit)) {
+    DEA_TRY(ctx, read_quantity(ctx, text->per_unit, "per_unit", si, unit, factor, good));
+    if (*good && *factor == 0) {
+      *good = false;
+      return dea_finding_add(ctx, DEA_ERROR, text->per_unit->location, "per_unit must not be 0");
+    }
+  }
+  if (is_given(text->at_zero)) {
+    DEA_TRY(ctx, read_quantity(ctx, text->at_zero, "at_zero", si, unit, offset, good));
+  }
+  return DEA_OK;
 }
 
 // By the mapping ---------------------------------------------------------------------------------
@@ -95,12 +198,12 @@ static dea_status read_column(struct work *work, size_t column, enum dea_column_
 
 /* Scale of a column; counts an error. */
 static dea_status scale(struct work *work, size_t column, const char *si,
-                        const struct dea_scale_text *text, struct dea_location location)
+                        const struct scale_text *text, struct dea_location location)
 {
   struct dea_column_role *role = &work->roles[column];
   bool good;
-  DEA_TRY(work->ctx, dea_scale_find(work->ctx, &work->table->columns[column], si, text, location,
-                                    &role->factor, &role->offset, &good));
+  DEA_TRY(work->ctx, find_scale(work->ctx, &work->table->columns[column], si, text, location,
+                                &role->factor, &role->offset, &good));
   work->errors += !good;
   return DEA_OK;
 }
@@ -108,7 +211,7 @@ static dea_status scale(struct work *work, size_t column, const char *si,
 /* The column of times that a key names. */
 static dea_status read_time(struct work *work, const struct dea_label *name, size_t *clock)
 {
-  const struct dea_scale_text text = {.unit = &work->mapping->time_unit};
+  const struct scale_text text = {.unit = &work->mapping->time_unit};
   size_t column;
   DEA_TRY(work->ctx, find_column(work, name, &column));
   if (column == work->table->column_count) {
@@ -121,7 +224,7 @@ static dea_status read_time(struct work *work, const struct dea_label *name, siz
 
 static dea_status read_channel(struct work *work, const struct dea_mapped *mapped)
 {
-  const struct dea_scale_text text = {&mapped->unit, &mapped->per_unit, &mapped->at_zero};
+  const struct scale_text text = {&mapped->unit, &mapped->per_unit, &mapped->at_zero};
   size_t column;
   DEA_TRY(work->ctx, find_column(work, &mapped->column, &column));
   if (column == work->table->column_count) {
@@ -138,15 +241,15 @@ static dea_status read_channel(struct work *work, const struct dea_mapped *mappe
 static dea_status read_profile(struct work *work)
 {
   const struct dea_mapping *mapping = work->mapping;
-  const struct dea_scale_text text = {&mapping->profile.unit, &mapping->profile.per_unit,
-                                      &mapping->profile.at_zero};
+  const struct scale_text text = {&mapping->profile.unit, &mapping->profile.per_unit,
+                                  &mapping->profile.at_zero};
   const struct dea_label *pattern = &mapping->profile.columns;
   size_t found = 0, clock = 0, errors = work->errors;
   if (mapping->profile.time.text[0] != '\0') {
     DEA_TRY(work->ctx, read_time(work, &mapping->profile.time, &clock));
   }
   if (mapping->profile.x.text[0] != '\0') {
-    const struct dea_scale_text x_text = {.unit = &mapping->profile.x_unit};
+    const struct scale_text x_text = {.unit = &mapping->profile.x_unit};
     size_t column;
     DEA_TRY(work->ctx, find_column(work, &mapping->profile.x, &column));
     if (column < work->table->column_count) {
@@ -187,6 +290,34 @@ static dea_status read_mapping(struct work *work, size_t *clock)
 
 // Guessing ---------------------------------------------------------------------------------------
 
+int dea_guess_by_name(const char *name)
+{
+  static const int kinds[] = {
+      [DEA_WORD_NONE] = DEA_GUESS_NOTHING,      [DEA_WORD_TIME] = DEA_GUESS_TIME,
+      [DEA_WORD_COMMAND] = DEA_CHANNEL_COMMAND, [DEA_WORD_VOLTAGE] = DEA_CHANNEL_VOLTAGE,
+      [DEA_WORD_CURRENT] = DEA_CHANNEL_CURRENT, [DEA_WORD_DISPLACEMENT] = DEA_CHANNEL_DISPLACEMENT,
+      [DEA_WORD_FORCE] = DEA_CHANNEL_FORCE,     [DEA_WORD_UNCERTAINTY] = DEA_GUESS_UNCERTAINTY,
+  };
+  return kinds[dea_word_of_quantity(name)];
+}
+
+/* si: SI unit of the column's unit. */
+static int guess_by_unit(const char *name, const char *si)
+{
+  if (strcmp(si, "s") == 0) {
+    return DEA_GUESS_TIME;
+  }
+  if (dea_word_find(name, DEA_WORD_POSITION, DEA_WORD_POSITION) != DEA_WORD_NONE) {
+    return DEA_GUESS_NOTHING; // where something is, not how it moves
+  }
+  for (int k = DEA_CHANNEL_VOLTAGE; k < DEA_CHANNEL_OTHER; k++) {
+    if (strcmp(si, dea_channel_meanings[k].si_unit) == 0) {
+      return k;
+    }
+  }
+  return DEA_GUESS_NOTHING;
+}
+
 /* Whether all numbers of a column are one: an exposure in ms is no clock. */
 static bool is_constant(const struct dea_table_column *column)
 {
@@ -212,7 +343,7 @@ static dea_status read_guessed_time(struct work *work, size_t i)
   }
   if (mapping != NULL && mapping->time_unit.text[0] != '\0' &&
       work->table->columns[i].unit[0] == '\0') {
-    const struct dea_scale_text text = {.unit = &mapping->time_unit};
+    const struct scale_text text = {.unit = &mapping->time_unit};
     return scale(work, i, "s", &text, mapping->time_unit.location);
   }
   return DEA_OK;
@@ -298,7 +429,7 @@ static void guess_channel(struct work *work, size_t i)
     return;
   }
   if (!named && si != NULL) {
-    kind = dea_guess_by_unit(column->name, si);
+    kind = guess_by_unit(column->name, si);
   }
   if (kind < 0) {
     return;

@@ -1,8 +1,5 @@
 #include "instrument/gocator_parse.h"
 
-#include "base/text.h"
-
-#include <math.h>
 #include <string.h>
 
 enum { HEADER = 6, STAMP = 1, POINTS = 5, UNIFORM = 6, MEASUREMENT = 10, ATTRIBUTES_LEAST = 25 };
@@ -181,59 +178,4 @@ bool dea_gocator_reply(const unsigned char *bytes, size_t length, unsigned id, i
     length -= size;
   }
   return false;
-}
-
-/* After the next comma, or at the end. */
-static const char *next_field(const char *text)
-{
-  text += strcspn(text, ",");
-  return text + (*text == ',');
-}
-
-/* Digits up to the field's end. */
-static bool is_number(const char *field, const char *digits)
-{
-  size_t length = strcspn(field, ",");
-  return length > 0 && strspn(field, digits) == length;
-}
-
-/* Value "V151290", "V-5.5", "VINVALID" or "INVALID". */
-static bool read_value(const char *field, double *out)
-{
-  static const char invalid[] = "INVALID";
-  const char *end;
-  if (strncmp(field + (field[0] == 'V'), invalid, strlen(invalid)) == 0) {
-    *out = NAN;
-    return true;
-  }
-  if (field[0] != 'V' || !is_number(field + 1, "+-.0123456789")) {
-    return false;
-  }
-  *out = dea_text_to_double(field + 1, &end);
-  return *end == ',' || *end == '\0';
-}
-
-bool dea_gocator_value_next(const char **cursor, struct dea_gocator_value *out)
-{
-  const char *field = *cursor;
-  while (*field != '\0') {
-    const char *id = next_field(field), *value = next_field(id), *end;
-    bool begins = field[0] == 'M' && is_number(field + 1, "0123456789abcdefABCDEF");
-    if (begins && is_number(id, "0123456789") && strcspn(id, ",") < 9 &&
-        read_value(value, &out->thousandths)) {
-      out->id = (long)dea_text_to_double(id, &end);
-      *cursor = next_field(value);
-      return true;
-    }
-    field = id;
-  }
-  *cursor = field;
-  return false;
-}
-
-bool dea_gocator_refused(const char *line, const char **reason)
-{
-  static const char word[] = "ERROR";
-  *reason = next_field(line);
-  return strncmp(line, word, strlen(word)) == 0;
 }

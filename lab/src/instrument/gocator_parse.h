@@ -1,6 +1,5 @@
-/* What Gocator line profile sensors (LMI Technologies) send, as bytes and as text.
- *
- * Bytes: the data stream "GDP" (TCP 3196), little-endian messages of
+/* What Gocator line profile sensors (LMI Technologies) send: the data stream "GDP" (TCP 3196),
+ * little-endian messages of
  *     size u32 (with itself), control u16 (bit 15: last of its group, bits 0-14: type), content.
  * Type 1, stamps: count u32, size of one u16, source u8, reserved u8; each: frame index u64,
  *   time [us] u64, and what is not read here.
@@ -10,15 +9,12 @@
  *   -32768 is no point.
  * Type 10, measurement: count u32, reserved u16, id u16; each: value [1/1000 of its unit] i32,
  *   decision u8 (bits 1-7: 0 valid), reserved 3 x u8.
- * Source: "Gocator Line Profile Sensors: User Manual", chapters "Data Results" and "ASCII
- * Protocol". Order and size of the fields, the types' numbers and INT32_MIN for no measurement are
- * those of the manufacturer's GoSdk (Messages/GoDataTypes.c), too. That -32768 is the missing point
- * is in the sensor's published examples; that the x of a point cloud has it too, and that several
- * profiles of one message belong to as many stamps, is concluded, not published. Type 31
- * (measurements of several parts) is passed over. Not tried with a sensor.
- *
- * Text: "OK,M00,00,V151290,D0,M01,01,V18520,D0": type (hexadecimal), id, value [1/1000 mm] or
- * INVALID, decision; without "OK," when it is sent unasked. "ERROR,reason". */
+ * Source: "Gocator Line Profile Sensors: User Manual", chapter "Data Results". Order and size of
+ * the fields, the types' numbers and INT32_MIN for no measurement are those of the manufacturer's
+ * GoSdk (Messages/GoDataTypes.c), too. That -32768 is the missing point is in the sensor's
+ * published examples; that the x of a point cloud has it too, and that several profiles of one
+ * message belong to as many stamps, is concluded, not published. Type 31 (measurements of several
+ * parts) is passed over. Not tried with a sensor. */
 #pragma once
 
 #include <stdbool.h>
@@ -86,13 +82,3 @@ void dea_gocator_command(unsigned id, unsigned char out[DEA_GOCATOR_COMMAND_SIZE
 /* Status of the reply to a command that is first in bytes[length]; false: not there whole. Replies
  * to others before it are passed over. */
 bool dea_gocator_reply(const unsigned char *bytes, size_t length, unsigned id, int32_t *status);
-
-/* A value of a text line. */
-struct dea_gocator_value {
-  long id;
-  double thousandths; // NAN: invalid
-};
-/* The next value of a line, from *cursor on; false at its end. What is none is passed over. */
-bool dea_gocator_value_next(const char **cursor, struct dea_gocator_value *out);
-/* Whether a line says ERROR; *reason: what follows, lent. */
-bool dea_gocator_refused(const char *line, const char **reason);

@@ -46,7 +46,10 @@ struct dea_instrument {
   size_t profile_points; // known once opened
   const double *x_m;     // [profile_points], lent by the instrument
   bool patient;          // its clock stands still while nobody asks
-  size_t lost;           // samples, frames or replies that did not arrive or made no sense
+  /* The recording's clock is 0 then, by the computer's: at its start, and what does not play is set
+   * anew once that has begun, which may have taken a while. Of a DAQ it is that of its samples. */
+  double start_s;
+  size_t lost; // samples, frames or replies that did not arrive or made no sense
   /* One line that tells the supply from another one that gets its address; "": nothing does. */
   char mark[DEA_INSTRUMENT_MARK_SIZE];
   /* Number of the host that it is connected to: 0 V must not wait for a name. "": there is none. */
@@ -81,9 +84,6 @@ struct dea_instrument_type {
                      struct dea_instrument **out);
   /* Starts the clock. */
   dea_status (*start)(struct dea_context *ctx, struct dea_instrument *instrument);
-  /* The recording's clock begins now, once, after the start and before anything is asked for: what
-   * plays has begun, which may have taken a while. NULL where its clock is that of the output. */
-  void (*set_clock)(struct dea_instrument *instrument);
   /* Queues control voltages [V] for the output, in the order played, one a sample of the protocol's
    * rate; waits while the queue is full. Before the start it may fill the queue (a fraction of a
    * second); a DAQ whose queue is empty at the start begins with the first sample put afterwards.

@@ -1,22 +1,16 @@
-/* Instrument "gocator": a line profile sensor of LMI Technologies, by its data stream (profiles and
- * measurements) or by text (measurements). See gocator_parse.h for what is sent. */
+/* Instrument "gocator": a line profile sensor of LMI Technologies, by its data stream of profiles
+ * and measurements. See gocator_parse.h for what is sent. */
 #include "base/clock.h"
 #include "base/schema_value.h"
 #include "instrument/gocator_frames.h"
 #include "instrument/instrument_make.h"
-#include "instrument/line_reader.h"
 #include "instrument/socket.h"
 
-#include <stdio.h>
-#include <string.h>
-
-enum { PROFILES, MEASUREMENTS, TEXT, POLLED };
-static const char *const modes[] = {"profiles", "measurements", "text", "polled", NULL};
+enum { PROFILES, MEASUREMENTS };
+static const char *const modes[] = {"profiles", "measurements", NULL};
 static const char *const yes_no[] = {"no", "yes", NULL};
 
 enum {
-  DATA_PORT = 3196,
-  TEXT_PORT = 8190,
   STATUS_GOOD = 1,
   STATUS_WRONG_STATE = -1000,
   RECEIVE_SIZE = 16384,
@@ -32,7 +26,7 @@ struct raw_measurement {
 struct raw {
   struct dea_label kind, address;
   struct dea_choice mode, start;
-  struct dea_quantity port, control_port, timeout_s, interval_s;
+  struct dea_quantity port, control_port, timeout_s;
   struct raw_measurement measurements[DEA_INSTRUMENT_READINGS_MAX];
   size_t measurement_count;
 };
@@ -59,22 +53,17 @@ static const struct dea_field fields[] = {
     DEA_INSTRUMENT_KIND(struct raw, "gocator"),
     DEA_INSTRUMENT_LABEL(struct raw, address, "address", "its name or address in the network",
                          "192.168.1.10", .default_text = "192.168.1.10"),
-    DEA_INSTRUMENT_CHOICE(
-        struct raw, mode, "mode",
-        "what it sends (set in its web page under Output): profiles and "
-        "measurements, or measurements, as data; measurements as text, unasked or "
-        "polled",
-        modes, "profiles"),
-    DEA_INSTRUMENT_PORT(struct raw, port, "port", "TCP port of the data or the text",
-                        .absent_text = "3196, of text 8190"),
-    DEA_INSTRUMENT_PORT(struct raw, control_port, "control_port",
-                        "TCP port of commands; not used with text", .default_text = "3190"),
+    DEA_INSTRUMENT_CHOICE(struct raw, mode, "mode",
+                          "what it sends (set in its web page under Output): profiles and "
+                          "measurements, or measurements",
+                          modes, "profiles"),
+    DEA_INSTRUMENT_PORT(struct raw, port, "port", "TCP port of the data", .default_text = "3196"),
+    DEA_INSTRUMENT_PORT(struct raw, control_port, "control_port", "TCP port of commands",
+                        .default_text = "3190"),
     DEA_INSTRUMENT_CHOICE(struct raw, start, "start",
                           "start the sensor, and stop it at the end; no: it runs already", yes_no,
                           "yes"),
     DEA_INSTRUMENT_TIME(struct raw, timeout_s, "timeout", "longest silence", "2 s", 3600),
-    DEA_INSTRUMENT_TIME(struct raw, interval_s, "interval", "between two questions when polled",
-                        "20 ms", 3600),
     {.key = "measurements",
      .kind = DEA_FIELD_RECORD,
      .record = &measurement_record,
@@ -90,13 +79,10 @@ struct gocator {
   struct dea_instrument base;
   struct raw raw;
   struct dea_socket data, control;
-  struct dea_line_reader lines;
   struct dea_gocator_frames frames;
-  double start_s;                              // computer's clock at start; NAN before
   double heard_s;                              // when the last sense was heard
   double value_s[DEA_INSTRUMENT_READINGS_MAX]; // time of the last value of each
-  double asked_s, due_s; // polled: when it was asked last, NAN: not waiting; when next
-  bool started;          // by us
+  bool started;                                // by us
   bool noted_odd, noted_grid;
   struct dea_gdp stream;
 };
@@ -124,11 +110,6 @@ static dea_status check(const struct dea_reader *reader, const void *data,
     }
   }
   return DEA_OK;
-}
-
-static bool is_text(const struct gocator *g)
-{
-  return g->raw.mode.value == TEXT || g->raw.mode.value == POLLED;
 }
 
 /* Sends Start by the control connection and reads how it went. */
@@ -169,7 +150,7 @@ static dea_status start_sensor(struct dea_context *ctx, struct gocator *g)
 
 static dea_status silent(struct dea_context *ctx, const struct gocator *g)
 {
-  static const char *const what[] = {"profile", "measurement", "measurement", "answer"};
+  static const char *const what[] = {"profile", "measurement"};
   return dea_fail(ctx, DEA_E_INSTRUMENT,
                   "no %s came from %s for %g s; look at its laser and its trigger, and at what its "
                   "web page sends under Output",
@@ -183,7 +164,7 @@ static dea_status read_value(struct gocator *g, long id, double thousandths, dou
   for (size_t i = 0; i < g->raw.measurement_count; i++) {
     const struct raw_measurement *m = &g->raw.measurements[i];
     if ((long)m->id.si == id) {
-      double time_s = clock_s - g->start_s;
+      double time_s = clock_s - g->base.start_s;
       if (sink == NULL || !(time_s >= 0)) {
         return DEA_OK;
       }
@@ -223,7 +204,8 @@ static dea_status read_profiles(struct dea_context *ctx, struct gocator *g, doub
     if (stamp != NULL) {
       dea_gocator_frames_add(&g->frames, stamp, arrived_s);
     }
-    if (dea_gocator_frames_time(&g->frames, stamp, arrived_s, g->start_s, &time_s, &g->base.lost)) {
+    if (dea_gocator_frames_time(&g->frames, stamp, arrived_s, g->base.start_s, &time_s,
+                                &g->base.lost)) {
       g->heard_s = arrived_s; // what has no time that can be is none
       dea_gocator_frames_place(&g->frames, p, k);
       DEA_TRY(ctx, sink->profile(sink->user, time_s, g->frames.z_m));
@@ -283,71 +265,21 @@ static dea_status read_data(struct dea_context *ctx, struct gocator *g, const un
   }
 }
 
-static dea_status read_text(struct dea_context *ctx, struct gocator *g, const char *bytes,
-                            size_t length, const struct dea_sink *sink)
-{
-  const char *line, *reason;
-  size_t dropped = g->lines.dropped;
-  while ((line = dea_line_next(&g->lines, &bytes, &length)) != NULL) {
-    struct dea_gocator_value value;
-    double now_s = dea_clock_s(), time_s = now_s;
-    if (dea_gocator_refused(line, &reason)) {
-      return dea_fail(ctx, DEA_E_INSTRUMENT, "%s answers: %.200s", g->data.name, reason);
-    }
-    if (g->raw.mode.value == POLLED && !isnan(g->asked_s)) {
-      time_s = 0.5 * (g->asked_s + now_s); // it was measured between question and answer
-      g->asked_s = NAN;
-    }
-    while (dea_gocator_value_next(&line, &value)) {
-      DEA_TRY(ctx, read_value(g, value.id, value.thousandths, time_s, sink));
-    }
-  }
-  g->base.lost += sink != NULL ? g->lines.dropped - dropped : 0;
-  return DEA_OK;
-}
-
 /* Reads what is there once, waiting up to timeout_s. */
 static dea_status receive(struct dea_context *ctx, struct gocator *g, double timeout_s,
                           const struct dea_sink *sink, size_t *length)
 {
   unsigned char bytes[RECEIVE_SIZE];
   DEA_TRY(ctx, dea_socket_read(ctx, &g->data, timeout_s, bytes, sizeof bytes, length));
-  return is_text(g) ? read_text(ctx, g, (const char *)bytes, *length, sink)
-                    : read_data(ctx, g, bytes, *length, sink);
-}
-
-/* Asks for all measurements when it is time; *wait_s gets shorter until the next time. */
-static dea_status poll_it(struct dea_context *ctx, struct gocator *g, double *wait_s)
-{
-  char text[8 * DEA_INSTRUMENT_READINGS_MAX + 16] = "Result";
-  double now_s = dea_clock_s();
-  if (g->raw.mode.value != POLLED || !isnan(g->asked_s)) {
-    return DEA_OK;
-  }
-  if (now_s < g->due_s) {
-    *wait_s = fmin(*wait_s, g->due_s - now_s);
-    return DEA_OK;
-  }
-  size_t length = strlen(text);
-  for (size_t i = 0; i < g->raw.measurement_count; i++) {
-    length += (size_t)snprintf(text + length, sizeof text - length, ",%.0f",
-                               g->raw.measurements[i].id.si);
-  }
-  length += (size_t)snprintf(text + length, sizeof text - length, "\r\n");
-  g->asked_s = now_s;
-  g->due_s = fmax(now_s, g->due_s + g->raw.interval_s.si);
-  return dea_socket_write(ctx, &g->data, g->raw.timeout_s.si, text, length);
+  return read_data(ctx, g, bytes, *length, sink);
 }
 
 static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
 {
-  static const char text[] = "Stop\r\n";
   struct gocator *g = (struct gocator *)instrument;
   unsigned char command[DEA_GOCATOR_COMMAND_SIZE];
   (void)ctx;
-  if (g->started && is_text(g)) {
-    dea_socket_write_if_possible(&g->data, text, strlen(text));
-  } else if (g->started) {
+  if (g->started) {
     dea_gocator_command(DEA_GOCATOR_STOP, command);
     dea_socket_write_if_possible(&g->control, command, sizeof command);
   }
@@ -363,44 +295,11 @@ static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
   dea_free(ctx, g);
 }
 
-/* Starts the sensor by text; its answer is a line before the measurements. */
-static dea_status start_by_text(struct dea_context *ctx, struct gocator *g)
-{
-  static const char command[] = "Start\r\n";
-  char byte;
-  const char *line = NULL, *reason;
-  double until_s = dea_clock_s() + g->raw.timeout_s.si, left_s = g->raw.timeout_s.si;
-  DEA_TRY(ctx, dea_socket_write(ctx, &g->data, left_s, command, strlen(command)));
-  while (line == NULL && left_s > 0) {
-    size_t length;
-    const char *at = &byte; // one at a time: what follows the line is for others
-    DEA_TRY(ctx, dea_socket_read(ctx, &g->data, left_s, &byte, 1, &length));
-    line = dea_line_next(&g->lines, &at, &length);
-    left_s = until_s - dea_clock_s();
-  }
-  if (line == NULL) {
-    return dea_fail(ctx, DEA_E_INSTRUMENT,
-                    "%s does not answer the command to start; start the sensor in its web page and "
-                    "write 'start: no'",
-                    g->data.name);
-  }
-  g->started = !dea_gocator_refused(line, &reason);
-  return g->started
-             ? DEA_OK
-             : dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                               "%s answers the command to start: %.200s; it is left as it is",
-                               g->data.name, reason);
-}
-
 static dea_status set_up(struct dea_context *ctx, struct gocator *g)
 {
-  const char *what = is_text(g) ? "the Gocator's text" : "the Gocator";
-  int port = !isnan(g->raw.port.si) ? (int)g->raw.port.si : is_text(g) ? TEXT_PORT : DATA_PORT;
-  DEA_TRY(ctx,
-          dea_socket_connect(ctx, what, g->raw.address.text, port, g->raw.timeout_s.si, &g->data));
-  if (g->raw.start.value == 1) {
-    DEA_TRY(ctx, is_text(g) ? start_by_text(ctx, g) : start_sensor(ctx, g));
-  }
+  DEA_TRY(ctx, dea_socket_connect(ctx, "the Gocator", g->raw.address.text, (int)g->raw.port.si,
+                                  g->raw.timeout_s.si, &g->data));
+  DEA_TRY(ctx, g->raw.start.value == 1 ? start_sensor(ctx, g) : DEA_OK);
   double until_s = dea_clock_s() + g->raw.timeout_s.si;
   while (g->raw.mode.value == PROFILES && g->frames.points == 0) {
     size_t length;
@@ -428,7 +327,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   g->base.type = &dea_instrument_gocator;
   g->base.roles = (g->raw.mode.value == PROFILES ? DEA_SENDS_PROFILES : 0U) |
                   (g->raw.measurement_count > 0 ? DEA_GIVES_READINGS : 0U);
-  g->start_s = g->asked_s = NAN;
+  g->base.start_s = NAN;
   g->frames.offset_s = INFINITY;
   g->data.descriptor = g->control.descriptor = -1;
   for (size_t i = 0; i < g->raw.measurement_count; i++) {
@@ -452,16 +351,11 @@ static dea_status start_gocator(struct dea_context *ctx, struct dea_instrument *
   for (int i = 0; i < DRAIN_MOST && length > 0; i++) { // what waits is from before
     DEA_TRY(ctx, receive(ctx, g, 0, NULL, &length));
   }
-  g->start_s = g->heard_s = g->due_s = dea_clock_s();
+  g->base.start_s = g->heard_s = dea_clock_s();
   for (size_t i = 0; i < DEA_INSTRUMENT_READINGS_MAX; i++) {
     g->value_s[i] = -INFINITY;
   }
   return DEA_OK;
-}
-
-static void set_clock(struct dea_instrument *instrument)
-{
-  ((struct gocator *)instrument)->start_s = dea_clock_s();
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
@@ -471,9 +365,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   double until_s = dea_clock_s() + timeout_s, left_s = timeout_s;
   size_t length;
   do {
-    double wait_s = fmax(left_s, 0);
-    DEA_TRY(ctx, poll_it(ctx, g, &wait_s));
-    wait_s = fmin(wait_s, fmax(g->heard_s + g->raw.timeout_s.si - dea_clock_s(), 0));
+    double wait_s = fmin(left_s, g->heard_s + g->raw.timeout_s.si - dea_clock_s());
     DEA_TRY(ctx, receive(ctx, g, wait_s, sink, &length));
     if (dea_clock_s() - g->heard_s > g->raw.timeout_s.si) {
       return silent(ctx, g);
@@ -491,7 +383,6 @@ const struct dea_instrument_type dea_instrument_gocator = {
     .check = check,
     .open = open_it,
     .start = start_gocator,
-    .set_clock = set_clock,
     .get = get,
     .stop = stop,
     .close = close_it,

@@ -43,7 +43,6 @@ struct keyence {
   struct dea_poll_schedule schedule;
   bool waits; // for an answer
   int failed; // questions in a row without a value or what stands for none
-  double start_s;
 };
 
 static const struct dea_field reading_fields[] = {
@@ -227,14 +226,9 @@ static dea_status start_it(struct dea_context *ctx, struct dea_instrument *instr
 {
   struct keyence *k = (struct keyence *)instrument;
   (void)ctx;
-  k->start_s = dea_clock_s();
-  dea_poll_schedule_start(&k->schedule, k->start_s);
+  k->base.start_s = dea_clock_s();
+  dea_poll_schedule_start(&k->schedule, k->base.start_s);
   return DEA_OK;
-}
-
-static void set_clock(struct dea_instrument *instrument)
-{
-  ((struct keyence *)instrument)->start_s = dea_clock_s();
 }
 
 /* The question gave no value. */
@@ -242,7 +236,7 @@ static dea_status lose(struct keyence *k, const struct dea_sink *sink)
 {
   k->waits = false;
   k->base.lost++;
-  return sink->reading(sink->user, k->schedule.reading, dea_clock_s() - k->start_s, NAN);
+  return sink->reading(sink->user, k->schedule.reading, dea_clock_s() - k->base.start_s, NAN);
 }
 
 /* An answer; one that makes no sense is a lost value. */
@@ -266,7 +260,7 @@ static dea_status parse_answer(struct dea_context *ctx, struct keyence *k, const
   k->waits = false;
   k->failed = 0;
   return sink->reading(sink->user, k->schedule.reading,
-                       0.5 * (k->schedule.asked_s + now_s) - k->start_s,
+                       0.5 * (k->schedule.asked_s + now_s) - k->base.start_s,
                        value * r->factor.si + r->offset.si);
 }
 
@@ -313,7 +307,6 @@ const struct dea_instrument_type dea_instrument_keyence = {
     .check = check,
     .open = open_it,
     .start = start_it,
-    .set_clock = set_clock,
     .get = get,
     .close = close_it,
 };

@@ -4,7 +4,6 @@
 // its table `const struct dea_record dea_instrument_<name>_record`.
 #define DEA_INSTRUMENT_LIST(X)                                                                     \
   X(sim)                                                                                           \
-  X(comedi)                                                                                        \
   X(nidaqmx)                                                                                       \
   X(gocator)                                                                                       \
   X(keyence)                                                                                       \

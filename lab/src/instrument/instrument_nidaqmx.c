@@ -3,10 +3,9 @@
  * its start trigger, and both have the device's clock. The few prototypes and numbers below are
  * those of the "NI-DAQmx C Reference". Not tried with a device. */
 #include "base/clock.h"
-#include "instrument/daq.h"
 #include "instrument/instrument_make.h"
-#include "instrument/library.h"
 
+#include <dlfcn.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -59,21 +58,42 @@ struct driver {
   FUNCTIONS(MEMBER)
 #undef MEMBER
 };
-static const struct dea_library_symbol symbols[] = {
+static const struct {
+  const char *name;
+  size_t offset;
+} symbols[] = {
 #define SYMBOL(name, arguments) {"DAQmx" #name, offsetof(struct driver, name)},
     FUNCTIONS(SYMBOL)
 #undef SYMBOL
 };
 
-#define USUAL_LIBRARY "libnidaqmx.so.1"
 static const char *const wirings[] = {"default",      "referenced",         "non_referenced",
                                       "differential", "pseudodifferential", NULL};
 static const int32_t wiring_values[] = {DEFAULT, REFERENCED, NON_REFERENCED, DIFFERENTIAL,
                                         PSEUDODIFFERENTIAL};
 
+/* Longest time that the driver may take for what should be done at once. */
+static const double patience_s = 2;
+/* Samples of the inputs that it keeps while nobody takes them, and that are taken at a time. */
+static const double input_room_s = 10, scans_room_s = 0.5;
+/* Clocks are whole divisions of a quartz: what differs less was rounded in between. */
+static const double same_rate = 1e-7;
+enum { ROOM_LEAST = 64 };
+
+struct raw {
+  struct dea_label kind, device;
+  struct dea_choice wiring;
+  struct dea_quantity queue_s;
+};
 static const struct dea_field fields[] = {
-    DEA_DAQ_FIELDS("nidaqmx", "its name in NI MAX or `nilsdev`", "Dev1", wirings, "default",
-                   USUAL_LIBRARY),
+    DEA_INSTRUMENT_KIND(struct raw, "nidaqmx"),
+    DEA_INSTRUMENT_LABEL(struct raw, device, "device", "its name in NI MAX or `nilsdev`", "Dev1",
+                         .default_text = "Dev1"),
+    DEA_INSTRUMENT_CHOICE(struct raw, wiring, "wiring", "of all inputs", wirings, "default"),
+    DEA_INSTRUMENT_TIME(
+        struct raw, queue_s, "queue",
+        "of the output that is held ready; as long it takes until a stop is heard of", "0.25 s",
+        60),
 };
 const struct dea_record dea_instrument_nidaqmx_record = {
     "nidaqmx", "plays and measures with a DAQ of National Instruments", fields,
@@ -82,20 +102,17 @@ const struct dea_record dea_instrument_nidaqmx_record = {
 struct nidaqmx {
   struct dea_instrument base;
   struct driver driver;
-  struct dea_daq daq;
   char device[DEA_TITLE_SIZE];
   const struct dea_protocol *protocol;
   void *output, *input; // tasks; NULL: none
   bool found;           // its output is there, at whatever voltage
+  size_t capacity;      // of the output's queue, samples
+  size_t queued;        // samples given to the driver
+  size_t scans_room;    // of scans, samples of each input
+  double *scans;        // [scans_room][inputs]; owned
+  bool asked_to_start, running;
+  bool ran_dry; // the output had nothing left to play
 };
-
-static dea_status check(const struct dea_reader *reader, const void *data,
-                        const struct dea_protocol *protocol)
-{
-  const struct dea_daq_raw *raw = data;
-  (void)protocol;
-  return dea_library_check(reader, &raw->library, USUAL_LIBRARY);
-}
 
 /* Passes a negative code on with the library's own sentence; positive ones are warnings. */
 static dea_status judge(struct dea_context *ctx, const struct nidaqmx *n, int32_t code,
@@ -153,20 +170,30 @@ static dea_status set_zero(struct dea_context *ctx, struct nidaqmx *n)
   dea_status status = build_output(ctx, n);
   if (status == DEA_OK) {
     n->found = true;
-    int32_t code = n->driver.WriteAnalogF64(n->output, 1, 1, DEA_DAQ_PATIENCE_S, BY_CHANNEL, &zero,
-                                            NULL, NULL);
+    int32_t code =
+        n->driver.WriteAnalogF64(n->output, 1, 1, patience_s, BY_CHANNEL, &zero, NULL, NULL);
     status = judge(ctx, n, code, "put 0 V out");
   }
   clear(n, &n->output);
   return status;
 }
 
+static size_t samples_of(const struct nidaqmx *n, double seconds)
+{
+  double samples = seconds * n->protocol->rate_Hz.si;
+  return samples > ROOM_LEAST ? (size_t)samples : ROOM_LEAST;
+}
+
+/* A device whose clock differs from what was asked is refused, with the next rate that goes. */
 static dea_status set_clock(struct dea_context *ctx, struct nidaqmx *n, void *task, size_t samples)
 {
   double actual_Hz = 0, rate_Hz = n->protocol->rate_Hz.si;
   TRY(n, "take that rate", CfgSampClkTiming, task, "", rate_Hz, RISING, CONTINUOUS, samples);
   TRY(n, "tell its rate", GetSampClkRate, task, &actual_Hz);
-  return dea_daq_check_rate(ctx, n->device, rate_Hz, actual_Hz);
+  return fabs(actual_Hz - rate_Hz) <= same_rate * rate_Hz
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_INSTRUMENT, "%s has no rate of %.12g Hz; write 'rate: %.12g Hz'",
+                        n->device, rate_Hz, actual_Hz);
 }
 
 static dea_status build_input(struct dea_context *ctx, struct nidaqmx *n, int32_t wiring)
@@ -182,7 +209,7 @@ static dea_status build_input(struct dea_context *ctx, struct nidaqmx *n, int32_
     TRY(n, "measure on that input", CreateAIVoltageChan, n->input, channel, "", wiring,
         -input->range_V.si, input->range_V.si, VOLTS, NULL);
   }
-  DEA_TRY(ctx, set_clock(ctx, n, n->input, n->daq.input_room));
+  DEA_TRY(ctx, set_clock(ctx, n, n->input, samples_of(n, input_room_s)));
   snprintf(trigger, sizeof trigger, "/%s/ao/StartTrigger", n->device);
   TRY(n, "start its inputs with its output", CfgDigEdgeStartTrig, n->input, trigger, RISING);
   return DEA_OK;
@@ -192,9 +219,9 @@ static dea_status set_up(struct dea_context *ctx, struct nidaqmx *n, int32_t wir
 {
   DEA_TRY(ctx, set_zero(ctx, n));
   DEA_TRY(ctx, build_output(ctx, n));
-  DEA_TRY(ctx, set_clock(ctx, n, n->output, n->daq.capacity));
+  DEA_TRY(ctx, set_clock(ctx, n, n->output, n->capacity));
   TRY(n, "play without repetition", SetWriteRegenMode, n->output, NO_REGENERATION);
-  TRY(n, "take a queue of that length", CfgOutputBuffer, n->output, (uint32_t)n->daq.capacity);
+  TRY(n, "take a queue of that length", CfgOutputBuffer, n->output, (uint32_t)n->capacity);
   return build_input(ctx, n, wiring);
 }
 
@@ -212,18 +239,37 @@ static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
   struct nidaqmx *n = (struct nidaqmx *)instrument;
   clear(n, &n->output);
   clear(n, &n->input);
-  dea_daq_free(ctx, &n->daq);
+  dea_free(ctx, n->scans);
   dea_free(ctx, n);
 }
 
-static dea_status load(struct dea_context *ctx, const struct dea_daq_raw *raw, struct nidaqmx *n)
+/* Loads the library for good: it may not stand being unloaded. */
+static dea_status load(struct dea_context *ctx, const struct raw *raw, struct nidaqmx *n)
 {
+  static const char advice[] =
+      "it is installed from ni.com for PCIe and PXI devices; Linux has no driver for USB devices, "
+      "so play on Windows with the scripts of 'dea drive --export'";
   snprintf(n->device, sizeof n->device, "%s", raw->device.text);
-  return dea_library_open(ctx, raw->library.text, "NI-DAQmx",
-                          "it is installed from ni.com for PCIe and PXI devices; Linux has no "
-                          "driver for USB devices, so play on Windows with the scripts of 'dea "
-                          "drive --export'",
-                          symbols, DEA_INSTRUMENT_COUNT(symbols), &n->driver);
+  void *library = dlopen("libnidaqmx.so.1", RTLD_NOW | RTLD_LOCAL);
+  if (library == NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "NI-DAQmx is not on this computer (%.200s): %s",
+                    dlerror(), advice);
+  }
+  for (size_t i = 0; i < DEA_INSTRUMENT_COUNT(symbols); i++) {
+    void *symbol = dlsym(library, symbols[i].name);
+    if (symbol == NULL) {
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "NI-DAQmx has no function %s: %s", symbols[i].name,
+                      advice);
+    }
+    // As bytes: C knows no conversion of a data pointer to one of a function.
+    memcpy((char *)&n->driver + symbols[i].offset, &symbol, sizeof symbol);
+  }
+  return DEA_OK;
+}
+
+static void address(const void *raw, char *out, size_t size)
+{
+  snprintf(out, size, "%s", ((const struct raw *)raw)->device.text);
 }
 
 static struct dea_zero zero(struct dea_context *ctx, const void *data,
@@ -239,14 +285,16 @@ static struct dea_zero zero(struct dea_context *ctx, const void *data,
 static dea_status open_it(struct dea_context *ctx, const void *data,
                           const struct dea_protocol *protocol, struct dea_instrument **out)
 {
-  const struct dea_daq_raw *raw = data;
+  const struct raw *raw = data;
   struct nidaqmx *n = dea_alloc(ctx, 1, sizeof *n);
   DEA_TRY_MEMORY(n != NULL);
   n->base.type = &dea_instrument_nidaqmx;
   n->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
   n->protocol = protocol;
-  dea_status status = dea_daq_begin(ctx, protocol, raw->queue_s.si, &n->daq);
-  status = status == DEA_OK ? load(ctx, raw, n) : status;
+  n->capacity = samples_of(n, raw->queue_s.si);
+  n->scans_room = samples_of(n, scans_room_s);
+  n->scans = dea_alloc(ctx, n->scans_room, sizeof *n->scans * (protocol->input_count + 1));
+  dea_status status = n->scans != NULL ? load(ctx, raw, n) : DEA_E_MEMORY;
   status = status == DEA_OK ? set_up(ctx, n, wiring_values[raw->wiring.value]) : status;
   if (status != DEA_OK) {
     status = n->found ? dea_instrument_abandon(ctx, &n->base, status) : status;
@@ -260,7 +308,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 /* Inputs first: they wait for the output's trigger. */
 static dea_status start_tasks(struct dea_context *ctx, struct nidaqmx *n)
 {
-  n->daq.running = true;
+  n->running = true;
   if (n->input != NULL) {
     TRY(n, "start its inputs", StartTask, n->input);
   }
@@ -271,8 +319,26 @@ static dea_status start_tasks(struct dea_context *ctx, struct nidaqmx *n)
 static dea_status start_nidaqmx(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct nidaqmx *n = (struct nidaqmx *)instrument;
-  n->daq.asked_to_start = true;
-  return n->daq.queued > 0 ? start_tasks(ctx, n) : DEA_OK; // else with the first sample
+  n->asked_to_start = true;
+  return n->queued > 0 ? start_tasks(ctx, n) : DEA_OK; // else with the first sample
+}
+
+/* How many of `count` samples may be given to the driver at once. */
+static dea_status part_of(struct dea_context *ctx, const struct nidaqmx *n, size_t count,
+                          size_t *part)
+{
+  if (n->ran_dry) {
+    return dea_fail(ctx, DEA_E_INSTRUMENT,
+                    "%s had nothing left to play: the computer was too slow; give it a longer "
+                    "'queue' or a lower rate",
+                    n->device);
+  }
+  // before the start no more than the queue holds; afterwards the driver waits for room
+  size_t most = n->running ? n->capacity / 2 : n->capacity - n->queued;
+  *part = count < most ? count : most;
+  return most > 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", n->capacity);
 }
 
 static dea_status set_outputs(struct dea_context *ctx, struct dea_instrument *instrument,
@@ -283,17 +349,17 @@ static dea_status set_outputs(struct dea_context *ctx, struct dea_instrument *in
   while (count > 0) {
     int32_t written = 0;
     size_t part;
-    DEA_TRY(ctx, dea_daq_part(ctx, &n->daq, n->device, count, &part));
-    double timeout_s = DEA_DAQ_PATIENCE_S + (double)n->daq.capacity / n->protocol->rate_Hz.si;
+    DEA_TRY(ctx, part_of(ctx, n, count, &part));
+    double timeout_s = patience_s + (double)n->capacity / n->protocol->rate_Hz.si;
     TRY(n, "play on", WriteAnalogF64, n->output, (int32_t)part, 0, timeout_s, BY_CHANNEL, volts,
         &written, NULL);
     if (written <= 0 || (size_t)written > part) {
       return dea_fail(ctx, DEA_E_INSTRUMENT, "%s takes no more samples", n->device);
     }
-    n->daq.queued += (size_t)written;
+    n->queued += (size_t)written;
     volts += written;
     count -= (size_t)written;
-    DEA_TRY(ctx, n->daq.asked_to_start && !n->daq.running ? start_tasks(ctx, n) : DEA_OK);
+    DEA_TRY(ctx, n->asked_to_start && !n->running ? start_tasks(ctx, n) : DEA_OK);
   }
   return DEA_OK;
 }
@@ -305,7 +371,7 @@ static dea_status check_output(struct dea_context *ctx, struct nidaqmx *n)
   uint32_t done = 0;
   int32_t code = n->driver.IsTaskDone(n->output, &done);
   if (code == NO_REPETITION_OF_OLD || code == NO_REPETITION_OF_OLD_2 || code == MEMORY_UNDERFLOW) {
-    n->daq.ran_dry = true;
+    n->ran_dry = true;
     return DEA_OK;
   }
   return judge(ctx, n, code, "play on");
@@ -317,36 +383,34 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   struct nidaqmx *n = (struct nidaqmx *)instrument;
   uint32_t ready = 0;
   int32_t got = 0;
-  if (!n->daq.running || n->input == NULL) {
+  if (!n->running || n->input == NULL) {
     dea_clock_wait(timeout_s);
-    return n->daq.running ? check_output(ctx, n) : DEA_OK;
+    return n->running ? check_output(ctx, n) : DEA_OK;
   }
   DEA_TRY(ctx, check_output(ctx, n));
   TRY(n, "measure on", GetReadAvailSampPerChan, n->input, &ready);
-  size_t most = n->daq.scans_room, wanted = ready < 1 ? 1 : ready < most ? ready : most;
+  size_t most = n->scans_room, wanted = ready < 1 ? 1 : ready < most ? ready : most;
   if (ready == 0 && timeout_s <= 0) {
     return DEA_OK;
   }
-  int32_t code =
-      n->driver.ReadAnalogF64(n->input, (int32_t)wanted, timeout_s, BY_SCAN, n->daq.scans,
-                              (uint32_t)(most * n->protocol->input_count), &got, NULL);
+  int32_t code = n->driver.ReadAnalogF64(n->input, (int32_t)wanted, timeout_s, BY_SCAN, n->scans,
+                                         (uint32_t)(most * n->protocol->input_count), &got, NULL);
   DEA_TRY(ctx, code != NOT_YET_AVAILABLE ? judge(ctx, n, code, "measure on") : DEA_OK);
-  return got > 0 && (size_t)got <= wanted ? sink->samples(sink->user, n->daq.scans, (size_t)got)
+  return got > 0 && (size_t)got <= wanted ? sink->samples(sink->user, n->scans, (size_t)got)
                                           : DEA_OK;
 }
 
 const struct dea_instrument_type dea_instrument_nidaqmx = {
     .name = "nidaqmx",
     .record = &dea_instrument_nidaqmx_record,
-    .raw_size = sizeof(struct dea_daq_raw),
+    .raw_size = sizeof(struct raw),
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS,
-    .check = check,
     .open = open_it,
     .start = start_nidaqmx,
     .put = set_outputs,
     .get = get,
     .stop = stop,
-    .address = dea_daq_address,
+    .address = address,
     .zero = zero,
     .close = close_it,
 };

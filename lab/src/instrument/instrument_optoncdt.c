@@ -32,10 +32,10 @@ struct optoncdt {
   struct dea_instrument base;
   struct raw raw;
   struct dea_socket line;
-  int upper;               // byte that waits for its lower one; -1: none
-  double start_s, heard_s; // computer's clock; NAN before the start
-  double last_s;           // time of the last value; NAN: none
-  double late_s, until_s;  // least that a value of this window came behind its time; its end
+  int upper;              // byte that waits for its lower one; -1: none
+  double heard_s;         // computer's clock
+  double last_s;          // time of the last value; NAN: none
+  double late_s, until_s; // least that a value of this window came behind its time; its end
 };
 
 static const struct dea_field fields[] = {
@@ -107,7 +107,7 @@ static dea_status add_value(struct optoncdt *o, int number, double arrived_s,
     double distance_m = (1.02 * number / 16368 - 0.01) * o->raw.range_m.si;
     value = o->raw.factor.si * distance_m + o->raw.offset_m.si;
   }
-  time_s -= 0.5 * (o->raw.average.si - 1) * interval_s + o->start_s;
+  time_s -= 0.5 * (o->raw.average.si - 1) * interval_s + o->base.start_s;
   return sink != NULL && time_s >= 0 ? sink->reading(sink->user, 0, time_s, value) : DEA_OK;
 }
 
@@ -215,14 +215,9 @@ static dea_status start_it(struct dea_context *ctx, struct dea_instrument *instr
   while (came) {
     DEA_TRY(ctx, listen_for(ctx, o, 0, NULL, &came));
   }
-  o->start_s = o->heard_s = dea_clock_s();
+  o->base.start_s = o->heard_s = dea_clock_s();
   o->last_s = NAN; // while nobody listened some may have been lost
   return DEA_OK;
-}
-
-static void set_clock(struct dea_instrument *instrument)
-{
-  ((struct optoncdt *)instrument)->start_s = dea_clock_s();
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
@@ -240,7 +235,6 @@ const struct dea_instrument_type dea_instrument_optoncdt = {
     .check = check,
     .open = open_it,
     .start = start_it,
-    .set_clock = set_clock,
     .get = get,
     .close = close_it,
 };

@@ -1,11 +1,13 @@
 /* Instrument "sim": the whole bench, with a model of the design as its film. It plays the output,
- * reads the inputs and sends profiles; how it gets to what is true is in sim_bench.h, what it adds
- * to that in sim_noise.h. */
+ * reads the inputs and sends profiles. How it gets to what is true is in sim_bench.h; all that it
+ * adds to that comes from one stream of random numbers, drawn sample after sample, so that a seed
+ * gives the same recording however it is read. */
 #include "base/clock.h"
 #include "instrument/instrument_make.h"
-#include "instrument/sim_noise.h"
+#include "instrument/sim_bench.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 enum { FAST, REAL };
@@ -93,14 +95,19 @@ static const struct dea_field fields[] = {
 const struct dea_record dea_instrument_sim_record = {"sim", "a simulated bench", fields,
                                                      sizeof fields / sizeof fields[0]};
 
+/* Random numbers, of a seed. */
+struct random {
+  uint64_t state;
+  double spare; // second one of a pair of normal numbers; NAN: none
+};
+
 struct sim {
   struct dea_instrument base;
+  struct raw raw;
   const struct dea_protocol *protocol;
   struct dea_sim_bench *bench;
-  struct dea_sim_noise noise;
-  struct dea_sim_random random;
+  struct random random;
   bool real_time, stopped;
-  double started_s, frame_rate_Hz;
   double *x_m, *z_m;       // [profile_points]
   double *volts;           // [BLOCK_SAMPLES][inputs]
   double *queue;           // control voltages that wait
@@ -156,29 +163,6 @@ static struct dea_sim_settings settings_of(const struct raw *raw)
                                    raw->fatigue_s.si};
 }
 
-static void read_noise(const struct raw *raw, struct dea_sim_noise *out)
-{
-  *out = (struct dea_sim_noise){
-      .sigma = {[DEA_CHANNEL_VOLTAGE] = raw->voltage_V.si,
-                [DEA_CHANNEL_CURRENT] = raw->current_A.si,
-                [DEA_CHANNEL_DISPLACEMENT] = raw->displacement_m.si,
-                [DEA_CHANNEL_FORCE] = raw->force_N.si},
-      .displacement_drift_m_per_s = raw->displacement_drift_m_per_s.si,
-      .force_drift_N_per_s = raw->force_drift_N_per_s.si,
-      .force_offset_N = raw->force_offset_N.si,
-      .lost = raw->lost.si,
-      .discharges_per_s = raw->discharge_Hz.si,
-      .discharge_above_V = raw->discharge_V.si,
-      .discharge_C = raw->discharge_C.si,
-      .profile_sigma_m = raw->profile_m.si,
-      .tilt_rad = raw->tilt_rad.si,
-      .centre_m = raw->centre_m.si,
-      .frame_height_m = raw->frame_height_m.si,
-      .outliers = raw->outliers.si,
-      .missing = raw->missing.si,
-  };
-}
-
 static void close_sim(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct sim *s = (struct sim *)instrument;
@@ -191,8 +175,9 @@ static void close_sim(struct dea_context *ctx, struct dea_instrument *instrument
 }
 
 /* Memory, and where the sensor looks. */
-static dea_status prepare(struct dea_context *ctx, const struct raw *raw, struct sim *s)
+static dea_status prepare(struct dea_context *ctx, struct sim *s)
 {
+  const struct raw *raw = &s->raw;
   size_t points = (size_t)raw->points.si;
   s->x_m = dea_alloc(ctx, points, sizeof *s->x_m);
   s->z_m = dea_alloc(ctx, points, sizeof *s->z_m);
@@ -212,20 +197,18 @@ static dea_status prepare(struct dea_context *ctx, const struct raw *raw, struct
 static dea_status open_sim(struct dea_context *ctx, const void *data,
                            const struct dea_protocol *protocol, struct dea_instrument **out)
 {
-  const struct raw *raw = data;
-  const struct dea_sim_settings settings = settings_of(raw);
   *out = NULL;
   struct sim *s = dea_alloc(ctx, 1, sizeof *s);
   DEA_TRY_MEMORY(s != NULL);
   s->base.type = &dea_instrument_sim;
+  s->raw = *(const struct raw *)data;
   s->protocol = protocol;
-  s->random = dea_sim_random_of((uint64_t)raw->seed.si);
-  s->real_time = raw->pace.value == REAL;
+  s->random = (struct random){(uint64_t)s->raw.seed.si, NAN};
+  s->real_time = s->raw.pace.value == REAL;
   s->base.patient = !s->real_time;
-  s->frame_rate_Hz = raw->frame_rate_Hz.si;
-  read_noise(raw, &s->noise);
+  const struct dea_sim_settings settings = settings_of(&s->raw);
   dea_status status = dea_sim_bench_create(ctx, protocol, &settings, &s->bench);
-  status = status == DEA_OK ? prepare(ctx, raw, s) : status;
+  status = status == DEA_OK ? prepare(ctx, s) : status;
   if (status != DEA_OK) {
     close_sim(ctx, &s->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -234,12 +217,116 @@ static dea_status open_sim(struct dea_context *ctx, const void *data,
   return DEA_OK;
 }
 
+// What is added to the truth ---------------------------------------------------------------------
+
+static const double two_pi = 6.28318530717958647692;
+enum { ADC_BITS = 16 };
+
+/* splitmix64: Steele, Lea, Flood, Fast splittable pseudorandom number generators, OOPSLA 2014. */
+static uint64_t draw(struct random *random)
+{
+  uint64_t z = (random->state += 0x9e3779b97f4a7c15u);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+/* In [0, 1). */
+static double uniform(struct random *random)
+{
+  return ldexp((double)(draw(random) >> 11), -53);
+}
+
+/* Of mean 0 and standard deviation 1 (Box and Muller). */
+static double normal(struct random *random)
+{
+  if (!isnan(random->spare)) {
+    double spare = random->spare;
+    random->spare = NAN;
+    return spare;
+  }
+  double radius = sqrt(-2 * log(1 - uniform(random)));
+  double angle = two_pi * uniform(random);
+  random->spare = radius * sin(angle);
+  return radius * cos(angle);
+}
+
+/* The nearest step of a converter that ends at its range. */
+static double convert(double volts, double range_V)
+{
+  double step_V = ldexp(range_V, 1 - ADC_BITS);
+  return fmin(fmax(step_V * round(volts / step_V), -range_V), range_V - step_V);
+}
+
+/* What a channel of a kind shows, without its noise; *sigma: of that. */
+static double shown_value(const struct raw *raw, const struct dea_sim_state *state, int kind,
+                          double *sigma)
+{
+  switch (kind) {
+  case DEA_CHANNEL_VOLTAGE:
+    *sigma = raw->voltage_V.si;
+    return state->output_V;
+  case DEA_CHANNEL_CURRENT:
+    *sigma = raw->current_A.si;
+    return state->current_A;
+  case DEA_CHANNEL_DISPLACEMENT:
+    *sigma = raw->displacement_m.si;
+    return state->centre_z_m + raw->displacement_drift_m_per_s.si * state->time_s;
+  case DEA_CHANNEL_FORCE:
+    *sigma = raw->force_N.si;
+    return state->force_N + raw->force_offset_N.si + raw->force_drift_N_per_s.si * state->time_s;
+  default:
+    *sigma = 0;
+    return 0;
+  }
+}
+
+/* Volts at the wires of all inputs of the protocol for a sample; all NAN when it is lost. volts:
+ * [inputs]. */
+static void read_inputs(struct sim *s, const struct dea_sim_state *state, double *volts)
+{
+  const struct raw *raw = &s->raw;
+  double interval_s = 1 / s->protocol->rate_Hz.si, spike_A = 0, sigma;
+  bool lost = uniform(&s->random) < raw->lost.si;
+  bool discharge = uniform(&s->random) < raw->discharge_Hz.si * interval_s;
+  if (discharge && fabs(state->film_V) > raw->discharge_V.si) {
+    spike_A = copysign(raw->discharge_C.si / interval_s, state->film_V);
+  }
+  for (size_t i = 0; i < s->protocol->input_count; i++) {
+    const struct dea_protocol_input *input = &s->protocol->inputs[i];
+    double value = shown_value(raw, state, input->kind.value, &sigma);
+    value += sigma * normal(&s->random);
+    value += input->kind.value == DEA_CHANNEL_CURRENT ? spike_A : 0;
+    volts[i] = lost ? NAN : convert((value - input->at_zero) / input->per_volt, input->range_V.si);
+  }
+}
+
+/* A frame of the profile sensor. */
+static void read_profile(struct sim *s, double time_s)
+{
+  static const double largest_outlier_m = 1e-3;
+  const struct raw *raw = &s->raw;
+  double frame_m = dea_sim_bench_model(s->bench)->frame_radius_m, slope = tan(raw->tilt_rad.si);
+  double drift_m = raw->displacement_drift_m_per_s.si * time_s;
+  for (size_t i = 0; i < s->base.profile_points; i++) {
+    double radius_m = fabs(s->x_m[i] - raw->centre_m.si);
+    double film_m =
+        radius_m < frame_m ? dea_sim_bench_height(s->bench, radius_m) : raw->frame_height_m.si;
+    double error_m = raw->profile_m.si * normal(&s->random);
+    bool outlier = uniform(&s->random) < raw->outliers.si;
+    double spike_m = largest_outlier_m * (2 * uniform(&s->random) - 1);
+    bool missing = uniform(&s->random) < raw->missing.si;
+    s->z_m[i] =
+        missing ? NAN : film_m + drift_m + slope * s->x_m[i] + error_m + (outlier ? spike_m : 0);
+  }
+}
+
 // Playing ----------------------------------------------------------------------------------------
 
 static dea_status start_sim(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   (void)ctx;
-  ((struct sim *)instrument)->started_s = dea_clock_s();
+  instrument->start_s = dea_clock_s();
   return DEA_OK;
 }
 
@@ -249,7 +336,7 @@ static size_t due_samples(const struct sim *s)
   if (!s->real_time) {
     return s->put;
   }
-  double passed = floor((dea_clock_s() - s->started_s) * s->protocol->rate_Hz.si) + 1;
+  double passed = floor((dea_clock_s() - s->base.start_s) * s->protocol->rate_Hz.si) + 1;
   return passed < (double)s->put ? (size_t)fmax(passed, 0) : s->put;
 }
 
@@ -285,15 +372,14 @@ static dea_status sample(struct sim *s, double control_V, double *volts,
   if (status != DEA_OK) {
     return status;
   }
-  dea_sim_read_inputs(s->protocol, &s->noise, &state, &s->random, volts);
+  read_inputs(s, &state, volts);
   s->base.lost += s->protocol->input_count > 0 && isnan(volts[0]) ? 1 : 0;
-  double frame_s = (double)s->frames / s->frame_rate_Hz;
+  double frame_s = (double)s->frames / s->raw.frame_rate_Hz.si;
   if (s->base.profile_points == 0 || state.time_s < frame_s * (1 - 1e-12)) {
     return DEA_OK;
   }
   s->frames++;
-  dea_sim_read_profile(s->bench, &s->noise, state.time_s, &s->random, s->x_m,
-                       s->base.profile_points, s->z_m);
+  read_profile(s, state.time_s);
   return sink->profile(sink->user, state.time_s, s->z_m);
 }
 

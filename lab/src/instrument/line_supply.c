@@ -13,8 +13,9 @@ static const double rounding_V = 1e-6;
 
 // Lines ------------------------------------------------------------------------------------------
 
-dea_status dea_line_supply_wait(struct dea_context *ctx, struct dea_line_link *link, double until_s,
-                                const char **line)
+/* Waits for a line, byte by byte, so that none behind it is lost; NULL: none in time. */
+static dea_status wait_line(struct dea_context *ctx, struct dea_line_link *link, double until_s,
+                            const char **line)
 {
   *line = NULL;
   for (double left_s = until_s - dea_clock_s(); left_s > 0 && *line == NULL;
@@ -31,8 +32,8 @@ dea_status dea_line_supply_wait(struct dea_context *ctx, struct dea_line_link *l
   return DEA_OK;
 }
 
-dea_status dea_line_supply_send(struct dea_context *ctx, const struct dea_line_link *link,
-                                double timeout_s, const char *command)
+static dea_status send_line(struct dea_context *ctx, const struct dea_line_link *link,
+                            double timeout_s, const char *command)
 {
   char line[DEA_LINE_SUPPLY_COMMAND_SIZE + 1];
   int length = snprintf(line, sizeof line, "%.*s\r", DEA_LINE_SUPPLY_COMMAND_SIZE - 1, command);
@@ -57,8 +58,8 @@ dea_status dea_line_supply_query(struct dea_context *ctx, struct dea_line_supply
                                  const char *command, const char **answer)
 {
   const char *line;
-  DEA_TRY(ctx, dea_line_supply_send(ctx, &s->link, s->raw.behind_s.si, command));
-  DEA_TRY(ctx, dea_line_supply_wait(ctx, &s->link, dea_clock_s() + s->raw.behind_s.si, &line));
+  DEA_TRY(ctx, send_line(ctx, &s->link, s->raw.behind_s.si, command));
+  DEA_TRY(ctx, wait_line(ctx, &s->link, dea_clock_s() + s->raw.behind_s.si, &line));
   if (line == NULL) {
     return no_answer(ctx, s, command);
   }
@@ -102,10 +103,10 @@ static dea_status wake(struct dea_context *ctx, struct dea_line_supply *s)
   const char *sync = s->language->sync, *line;
   double until_s = dea_clock_s() + s->raw.timeout_s.si;
   for (double now_s = dea_clock_s(); now_s < until_s; now_s = dea_clock_s()) {
-    DEA_TRY(ctx, dea_line_supply_send(ctx, &s->link, s->raw.behind_s.si, sync));
+    DEA_TRY(ctx, send_line(ctx, &s->link, s->raw.behind_s.si, sync));
     double ask_s = fmin(now_s + fmax(again_s, s->raw.behind_s.si), until_s);
     do {
-      DEA_TRY(ctx, dea_line_supply_wait(ctx, &s->link, ask_s, &line));
+      DEA_TRY(ctx, wait_line(ctx, &s->link, ask_s, &line));
       if (line != NULL && s->language->is_synced(line)) {
         return DEA_OK;
       }
@@ -230,8 +231,8 @@ dea_status dea_line_supply_start(struct dea_context *ctx, struct dea_instrument 
 {
   struct dea_line_supply *s = (struct dea_line_supply *)instrument;
   (void)ctx;
-  s->start_s = dea_clock_s();
-  dea_timed_start(&s->output, s->start_s);
+  s->base.start_s = dea_clock_s();
+  dea_timed_start(&s->output, s->base.start_s);
   return DEA_OK;
 }
 
@@ -242,7 +243,7 @@ static dea_status query(struct dea_context *ctx, struct dea_line_supply *s,
 {
   s->asked = what;
   s->asked_s = dea_clock_s();
-  dea_status status = dea_line_supply_send(ctx, &s->link, s->raw.behind_s.si, command);
+  dea_status status = send_line(ctx, &s->link, s->raw.behind_s.si, command);
   s->output.turned_s = dea_clock_s(); // a supply that takes nothing is no stall of the computer
   return status;
 }
@@ -314,7 +315,7 @@ static dea_status play(struct dea_context *ctx, struct dea_line_supply *s, doubl
 static dea_status read_voltage(struct dea_context *ctx, struct dea_line_supply *s, double volts)
 {
   if (s->pending_count < DEA_LINE_SUPPLY_PENDING && s->base.reading_count > 0) {
-    s->pending[s->pending_count].time_s = 0.5 * (s->asked_s + dea_clock_s()) - s->start_s;
+    s->pending[s->pending_count].time_s = 0.5 * (s->asked_s + dea_clock_s()) - s->base.start_s;
     s->pending[s->pending_count++].volts = volts;
   }
   dea_status status = dea_timed_measured(ctx, &s->output, s->protocol, s->link.socket.name,
@@ -357,7 +358,7 @@ static dea_status serve(struct dea_context *ctx, void *supply, double until_s)
   size_t dropped = s->link.lines.dropped;
   double next_s;
   DEA_TRY(ctx, play(ctx, s, &next_s));
-  DEA_TRY(ctx, dea_line_supply_wait(ctx, &s->link, fmin(next_s, until_s), &answer));
+  DEA_TRY(ctx, wait_line(ctx, &s->link, fmin(next_s, until_s), &answer));
   if (s->link.lines.dropped > dropped) {
     return dea_fail(ctx, DEA_E_INSTRUMENT, "%s says what makes no sense", s->link.socket.name);
   }
@@ -397,4 +398,227 @@ dea_status dea_line_supply_hold(struct dea_context *ctx, struct dea_instrument *
   s->asked_s = dea_clock_s(); // an answer may wait since then
   *volts = dea_timed_hold(&s->output, s->asked_s);
   return DEA_OK;
+}
+
+// To 0 V ------------------------------------------------------------------------------------------
+
+/* How a supply on a serial line is brought to 0 V, and what is known of it then.
+ *
+ * 0 V is set and the output switched off, each command behind the answer to the one before, or
+ * without one where none comes; then its voltage is read back until it has been at 0 V for
+ * `behind`. Nothing that it says is believed but behind a new answer to `sync`. Where that does not
+ * come all begins anew on another connection, until the time is over. Where the line itself has
+ * gone, or somebody else had opened it, what answers at its name may be another supply: it is told
+ * 0 V too, which hurts nobody, but only one with the mark of this one is believed. Where another
+ * program has the line it is waited for; one that keeps it may set another voltage a moment later,
+ * and may have taken any answer: then 0 V is commanded, and nothing is believed. */
+
+static const double poll_s = 0.05, anew_s = 0.1;
+/* Of the time left: how long an answer is waited for, so that there is time for another try. */
+static const double share = 0.2;
+
+struct zeroing {
+  struct dea_line_link *link;
+  const struct dea_line_supply_language *language;
+  const struct dea_line_supply_raw *raw;
+  const void *named; // of the kind, with the name that it must have; NULL: not looked at
+  const struct dea_protocol *protocol;
+  double until_s;
+  bool doubted;                    // another supply may have the line's name
+  bool told;                       // that another one may be there
+  struct dea_instrument_past past; // of the supply that was used
+};
+
+static double wait_until(const struct zeroing *z)
+{
+  double now_s = dea_clock_s();
+  return now_s + fmin(z->raw->behind_s.si, share * fmax(z->until_s - now_s, 0));
+}
+
+/* The same while it is read back: where there is no time for another try, all that is left. */
+static double read_until(const struct zeroing *z)
+{
+  return z->until_s - dea_clock_s() > z->raw->behind_s.si ? wait_until(z) : z->until_s;
+}
+
+/* Whatever it answers, or not. False: nothing can be sent. */
+static bool command(struct dea_context *ctx, const struct zeroing *z, const char *text)
+{
+  const char *answer;
+  double until_s = wait_until(z);
+  return send_line(ctx, z->link, fmax(until_s - dea_clock_s(), 0), text) == DEA_OK &&
+         wait_line(ctx, z->link, until_s, &answer) == DEA_OK;
+}
+
+static bool command_zero(struct dea_context *ctx, const struct zeroing *z)
+{
+  char text[DEA_LINE_SUPPLY_COMMAND_SIZE];
+  snprintf(text, sizeof text, "%s0", z->language->set);
+  bool sent = command(ctx, z, ""); // ends what may stand in its buffer
+  sent = command(ctx, z, text) && sent;
+  for (size_t i = 0; z->language->off[i] != NULL; i++) {
+    sent = command(ctx, z, z->language->off[i]) && sent;
+  }
+  return sent;
+}
+
+/* Says once that another supply may be there. */
+static void report(struct dea_context *ctx, struct zeroing *z, const char *answer)
+{
+  if (!z->told) {
+    (void)dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                          "%s answers '%.60s', which the supply that is meant would not: it may be "
+                          "another one; it was told 0 V too, and is not believed",
+                          z->link->socket.name, answer);
+  }
+  z->told = true;
+}
+
+/* Its voltage now. False: it does not answer, or nothing that can be believed. */
+static bool ask_voltage(struct dea_context *ctx, struct zeroing *z, double *volts)
+{
+  const char *answer;
+  double until_s = read_until(z);
+  if (send_line(ctx, z->link, poll_s, z->language->sync) != DEA_OK) {
+    return false;
+  }
+  do { // older answers come first
+    if (wait_line(ctx, z->link, until_s, &answer) != DEA_OK || answer == NULL) {
+      return false;
+    }
+  } while (!z->language->is_synced(answer));
+  if (z->named != NULL && z->language->is_named != NULL &&
+      !z->language->is_named(z->named, answer)) {
+    report(ctx, z, answer);
+    return false;
+  }
+  return send_line(ctx, z->link, poll_s, z->language->measure) == DEA_OK &&
+         wait_line(ctx, z->link, read_until(z), &answer) == DEA_OK && answer != NULL &&
+         !z->language->is_error(answer) && z->language->voltage(answer, volts);
+}
+
+/* Reads the voltage back until it stays at 0 V or the time is over, then with why that is not
+ * known. False: it does not answer. */
+static bool read_back(struct dea_context *ctx, struct zeroing *z, struct dea_zero *zero)
+{
+  double since_s = NAN;
+  while (dea_clock_s() < z->until_s) {
+    double asked_s = dea_clock_s(), volts;
+    if (!ask_voltage(ctx, z, &volts)) {
+      return false;
+    }
+    zero->volts = volts / z->protocol->amplifier.gain.si;
+    if (!(fabs(volts) <= z->protocol->safety.at_zero_V.si)) {
+      since_s = NAN;
+    } else if (isnan(since_s)) {
+      since_s = asked_s;
+    } else if (asked_s - since_s >= z->raw->behind_s.si) {
+      zero->state = DEA_ZERO_READ_BACK;
+      return true;
+    }
+    dea_clock_wait(poll_s);
+  }
+  zero->why = isnan(since_s) ? NULL : dea_zero_not_for_long;
+  return true;
+}
+
+/* Whether it is the supply that was used. Of one whose line has never gone that is so. */
+static bool is_same(struct dea_context *ctx, struct zeroing *z)
+{
+  char line[DEA_INSTRUMENT_MARK_SIZE];
+  const char *answer = line;
+  if (!z->doubted || z->past.mark[0] == '\0') {
+    return !z->doubted;
+  }
+  if (z->language->mark == NULL) {
+    dea_serial_mark(&z->link->socket, line, sizeof line);
+  } else if (send_line(ctx, z->link, poll_s, z->language->mark) != DEA_OK ||
+             wait_line(ctx, z->link, wait_until(z), &answer) != DEA_OK || answer == NULL) {
+    return false;
+  }
+  bool same = strcmp(answer, z->past.mark) == 0;
+  if (!same) {
+    report(ctx, z, answer);
+  }
+  return same;
+}
+
+/* Says that another program has the line, too: once, as nothing else can be done then. */
+static void report_other_device(struct dea_context *ctx, const struct dea_socket *line, long holder)
+{
+  char text[DEA_SERIAL_HOLDER_SIZE];
+  dea_serial_holder_text(holder, text);
+  (void)dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                        "%s is in use by %s, which may set another voltage: it was told 0 V, and "
+                        "nothing that it says is believed; end that one",
+                        line->name, text);
+}
+
+/* On connections of its own, until one has said something or the time is over. */
+static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
+{
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, dea_zero_no_answer};
+  struct dea_serial_turn turn = {.wait_s = z->past.wait_s, .program = z->past.program};
+  bool told = false;
+  while (!told && dea_clock_s() < z->until_s) {
+    struct dea_line_link link = {.socket.descriptor = -1};
+    double began_s = dea_clock_s();
+    z->link = &link;
+    if (dea_serial_open_in_turn(ctx, z->language->what, z->raw->device.text, (int)z->raw->baud.si,
+                                0, &turn, &link.socket) == DEA_OK) {
+      double waited_s = dea_clock_s() - began_s;
+      z->until_s += waited_s; // its time begins with its turn
+      turn.wait_s -= waited_s;
+      told = command_zero(ctx, z) && (turn.beside || (is_same(ctx, z) && read_back(ctx, z, &zero)));
+      if (turn.beside) {
+        report_other_device(ctx, &link.socket, turn.holder);
+        zero.why = dea_zero_other;
+      }
+      dea_socket_close(&link.socket);
+    }
+    z->link = NULL;
+    if (!told) {
+      dea_clock_wait(fmin(anew_s, fmax(z->until_s - dea_clock_s(), 0)));
+    }
+  }
+  return zero;
+}
+
+struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrument *instrument)
+{
+  struct dea_line_supply *s = (struct dea_line_supply *)instrument;
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, NULL};
+  struct zeroing z = {.link = &s->link,
+                      .language = s->language,
+                      .raw = &s->raw,
+                      .protocol = s->protocol,
+                      .until_s = dea_clock_s() + s->protocol->safety.zero_time_s.si,
+                      .past = {s->base.mark, 0, s->protocol->safety.zero_time_s.si, "", NULL}};
+  bool told = false;
+  if (s->link.socket.descriptor >= 0) {
+    const char *answer;
+    if (s->asked != DEA_LINE_SUPPLY_NOTHING) { // the answer to what was asked before
+      wait_line(ctx, z.link, wait_until(&z), &answer);
+    }
+    told = command_zero(ctx, &z) && read_back(ctx, &z, &zero);
+    z.doubted = dea_socket_is_lost(&s->link.socket);
+    dea_socket_close(&s->link.socket);
+  }
+  zero = told ? zero : zero_anew(ctx, &z);
+  return dea_zero_believe(zero, dea_evidence_doubt(&s->output.evidence));
+}
+
+struct dea_zero dea_line_supply_zero(struct dea_context *ctx,
+                                     const struct dea_line_supply_language *language,
+                                     const void *data, const struct dea_protocol *protocol,
+                                     const struct dea_instrument_past *past)
+{
+  struct zeroing z = {.language = language,
+                      .raw = data,
+                      .named = data,
+                      .protocol = protocol,
+                      .until_s = dea_clock_s() + protocol->safety.zero_time_s.si,
+                      .doubted = past->mark[0] != '\0',
+                      .past = *past};
+  return zero_anew(ctx, &z);
 }

@@ -84,7 +84,7 @@ struct dea_line_supply {
   struct dea_timed_output output;
   double range_V;                            // at its output
   enum dea_line_supply_question asked, last; // what is waited for, and what was asked before
-  double asked_s, start_s;
+  double asked_s;
   long set_V; // that was sent last
   struct {
     double time_s, volts;
@@ -123,10 +123,3 @@ void dea_line_supply_close(struct dea_context *ctx, struct dea_instrument *instr
   .roles = DEA_PLAYS_OUTPUT | DEA_GIVES_READINGS, .start = dea_line_supply_start,                  \
   .put = dea_line_supply_set, .get = dea_line_supply_get, .hold = dea_line_supply_hold,            \
   .stop = dea_line_supply_stop, .address = dea_line_supply_address, .close = dea_line_supply_close
-
-/* What a line supply does in common; by line_supply_zero.c too. */
-/* Waits for a line, byte by byte, so that none behind it is lost; NULL: none in time. */
-dea_status dea_line_supply_wait(struct dea_context *ctx, struct dea_line_link *link, double until_s,
-                                const char **line);
-dea_status dea_line_supply_send(struct dea_context *ctx, const struct dea_line_link *link,
-                                double timeout_s, const char *command);

@@ -6,9 +6,8 @@
  * for each. An element has a tag of 8 bytes, type and length, and its data, padded to 8 bytes; one
  * of up to 4 bytes has them in the tag. A variable may be compressed as a whole. Source: MathWorks,
  * "MAT-File Format". */
-#include "matio/matio_module.h"
+#include "matio/mat_check.h"
 
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <zlib.h>

@@ -2,8 +2,9 @@
  *
  * What a file claims is compared with its length before anything is allocated for it: compressed
  * numbers are at most about a thousand times smaller than themselves. */
+#include "base/module.h"
 #include "base/text.h"
-#include "matio/matio_module.h"
+#include "matio/mat_check.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -313,7 +314,14 @@ static dea_status read_all(struct reader *reader, mat_t *mat)
   return DEA_OK;
 }
 
-dea_status dea_matio_read(struct dea_context *ctx, const char *file, struct dea_table *out)
+/* libmatio's own messages go nowhere: it would print them, and end the program at some. */
+static void be_quiet(int level, char *message)
+{
+  (void)level;
+  (void)message;
+}
+
+static dea_status read_mat(struct dea_context *ctx, const char *file, struct dea_table *out)
 {
   struct reader reader = {.ctx = ctx, .file = out->file, .table = out, .note = {.ctx = ctx}};
   struct stat info;
@@ -322,13 +330,17 @@ dea_status dea_matio_read(struct dea_context *ctx, const char *file, struct dea_
   }
   reader.bytes_max = (uint64_t)info.st_size * RATIO_MAX;
   DEA_TRY(ctx, dea_matio_check(ctx, file));
-  dea_matio_quiet();
+  Mat_LogInitFunc("dea", be_quiet);
   mat_t *mat = Mat_Open(file, MAT_ACC_RDONLY);
   if (mat == NULL) {
-    return dea_fail(ctx, DEA_E_IO, "'%s' is no .mat file of version 4, 5 or 7.3", file);
+    return dea_fail(ctx, DEA_E_IO, "'%s' is no .mat file of version 5 or 7.3", file);
   }
   dea_status status = read_all(&reader, mat);
   Mat_Close(mat);
   dea_text_free(&reader.note);
   return status;
 }
+
+extern DEA_MODULE_SYMBOL const struct dea_mat_type dea_matio_module;
+
+const struct dea_mat_type dea_matio_module = {.read = read_mat};

@@ -1,5 +1,5 @@
 /* The film on the bench as its design and a model tell of it: what the checks of a protocol and the
- * simulated bench ask. Who has designs and models fills in the functions (job/film_of_design.h);
+ * simulated bench ask. Who has designs and models fills in the functions (film/film_of_design.h);
  * the bench knows neither. */
 #pragma once
 
@@ -50,9 +50,8 @@ struct dea_bench_film_type {
 
   /* A model of the film. name: NULL for the one of the checks, which is quick and knows neither
    * fibres nor weight; else one that moves, or DEA_E_UNSUPPORTED. A film that is no disc, or whose
-   * `monitor` is asked for (NULL: the first one's z), moves by that: by model reduced, or, for
-   * other names, at rest at every moment by a table of model 3d. film: lent, outlives the model.
-   * out: owned by the caller, NULL on failure. */
+   * `monitor` is asked for (NULL: the first one's z), moves by that, by model reduced alone. film:
+   * lent, outlives the model. out: owned by the caller, NULL on failure. */
   dea_status (*open)(struct dea_context *ctx, const struct dea_bench_film *film, const char *name,
                      const char *monitor, struct dea_bench_model **out);
   void (*close)(struct dea_context *ctx, struct dea_bench_model *model);

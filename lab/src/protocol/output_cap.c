@@ -4,6 +4,8 @@
 #include <math.h>
 
 static const double rounding = 1e-9;
+static const double zero_most_V = 60;  // that may be touched, as direct voltage (IEC 61140)
+static const double zero_share = 0.01; // of the amplifier's range: errors of its monitor
 
 void dea_protocol_cap(const struct dea_protocol *protocol, double *lowest_V, double *highest_V)
 {
@@ -47,4 +49,16 @@ bool dea_protocol_factor_is_known(const struct dea_protocol *protocol, double fa
     }
   }
   return false;
+}
+
+double dea_zero_most_V(double range_V)
+{
+  return fmax(zero_most_V, zero_share * range_V);
+}
+
+double dea_protocol_zero_most_V(const struct dea_protocol *protocol)
+{
+  double reach_V = protocol->amplifier.gain.si * protocol->amplifier.control_V.si;
+  double range_V = fmax(protocol->amplifier.highest_V.si, -protocol->amplifier.lowest_V.si);
+  return dea_zero_most_V(fmin(range_V, reach_V));
 }

@@ -1,14 +1,16 @@
 #include "protocol/protocol_export.h"
 
 #include "base/write_file.h"
-#include "import/guess.h"
-#include "import/mat.h"
-#include "protocol/play.h"
+#include "import/import.h"
 
 #include <ctype.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+
+/* What the scripts end with, embedded by CMake: play_nidaqmx.py and play_matlab.m. */
+extern const char dea_asset_play_python[], dea_asset_play_matlab[];
 
 enum { TITLE_SIZE = 2 * DEA_CHANNEL_NAME_SIZE + 48, VARIABLE_SIZE = 63 };
 
@@ -336,27 +338,41 @@ static dea_status write_csv(struct dea_context *ctx, const struct waveform *wave
   return status;
 }
 
+/* A variable of a .mat file of version 5, a column of numbers; what comes behind it. */
+static char *add_variable(char *at, const char *name, const double *values, size_t count)
+{
+  enum { INT8 = 1, INT32 = 5, UINT32 = 6, DOUBLE = 9, MATRIX = 14, CLASS_DOUBLE = 6 };
+  const uint32_t length = (uint32_t)strlen(name), padded = (length + 7) / 8 * 8;
+  const uint32_t bytes = (uint32_t)(count * sizeof *values);
+  const uint32_t head[] = {MATRIX, 48 + padded + bytes, UINT32, 8,    CLASS_DOUBLE, 0, INT32,
+                           8,      (uint32_t)count,     1,      INT8, length};
+  const uint32_t data[] = {DOUBLE, bytes};
+  memcpy(at, head, sizeof head);
+  memcpy(at + sizeof head, name, length);
+  at += sizeof head + padded;
+  memcpy(at, data, sizeof data);
+  memcpy(at + sizeof data, values, bytes);
+  return at + sizeof data + bytes;
+}
+
 static dea_status write_mat(struct dea_context *ctx, const struct dea_protocol *protocol,
                             const struct waveform *wave, const char *directory)
 {
-  const struct dea_mat_variable variables[] = {
-      {.name = "title", .text = protocol->title.text},
-      {.name = "rate_Hz", .values = &protocol->rate_Hz.si, .count = 1},
-      {.name = "gain", .values = &protocol->amplifier.gain.si, .count = 1},
-      {.name = "time_s", .values = wave->time_s, .count = wave->count},
-      {.name = "voltage_V", .values = wave->voltage_V, .count = wave->count},
-      {.name = "control_V", .values = wave->control_V, .count = wave->count},
-  };
-  char *file = dea_path_join(ctx, directory, "waveform.mat");
-  DEA_TRY_MEMORY(file != NULL);
+  enum { HEAD = 128, VARIABLE_MOST = 80 };
+  static const uint16_t version[] = {0x0100, 0x4d49}; // "MI" in the order of the numbers' bytes
+  char *bytes = dea_alloc(ctx, HEAD + 5 * VARIABLE_MOST + 3 * wave->count * sizeof(double), 1);
+  DEA_TRY_MEMORY(bytes != NULL);
+  memset(bytes, ' ', HEAD - 12);
+  memcpy(bytes, "MATLAB 5.0 MAT-file", 19);
+  memcpy(bytes + HEAD - sizeof version, version, sizeof version);
+  char *end = add_variable(bytes + HEAD, "rate_Hz", &protocol->rate_Hz.si, 1);
+  end = add_variable(end, "gain", &protocol->amplifier.gain.si, 1);
+  end = add_variable(end, "time_s", wave->time_s, wave->count);
+  end = add_variable(end, "voltage_V", wave->voltage_V, wave->count);
+  end = add_variable(end, "control_V", wave->control_V, wave->count);
   dea_status status =
-      dea_mat_write(ctx, file, variables, sizeof variables / sizeof variables[0], DEA_MAT_5);
-  dea_free(ctx, file);
-  if (status == DEA_E_UNSUPPORTED) {
-    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                             "waveform.mat is left out: %s", dea_context_message(ctx));
-    dea_context_clear(ctx);
-  }
+      dea_file_write_into(ctx, directory, "waveform.mat", bytes, (size_t)(end - bytes));
+  dea_free(ctx, bytes);
   return status;
 }
 

@@ -177,7 +177,7 @@ static const struct dea_field protocol_fields[] = {
     DEA_FIELD_ROW(SECTION, "instruments", AT(instruments),
                   .absent_text = "none: only --sim and --export",
                   .doc = "what plays and measures; each with its kind and the keys of that",
-                  .example = "[{kind: comedi}, {kind: gocator, address: 192.168.1.10}]",
+                  .example = "[{kind: nidaqmx}, {kind: gocator, address: 192.168.1.10}]",
                   DEA_LIST(1, DEA_PROTOCOL_INSTRUMENTS_MAX, struct dea_protocol_instrument,
                            AT(instrument_count))),
     DEA_FIELD_ROW(SECTION, "sim", AT(sim), .absent_text = "its defaults",

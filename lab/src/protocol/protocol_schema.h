@@ -13,7 +13,3 @@ struct dea_protocol_raw {
 };
 
 extern const struct dea_record dea_protocol_record; // its base: a struct dea_protocol_raw
-
-/* Reads the specimen that a protocol names; beside: the protocol. What is wrong is a finding. */
-dea_status dea_specimen_read(struct dea_context *ctx, const char *beside,
-                             const struct dea_label *file, struct dea_specimen *out);

@@ -1,11 +1,13 @@
-/* The sequence on one clock. A time falls into a step, a repetition of its waveform, and a time of
- * that waveform, which begins anew for every repetition. */
+/* The sequence on one clock, and what repeats in it. A time falls into a step, a repetition of its
+ * waveform, and a time of that waveform, which begins anew for every repetition. */
 #include "protocol/protocol.h"
 
 #include <math.h>
 
 // of a sample's distance to the next: times that differ by less are the same, rounded
 static const double rounding = 1e-6;
+enum { CYCLES_LOOKED_AT = 1000 };
+static const double alike = 1e-9, section_s = 10; // of a waveform; of a voltage that stays
 
 /* Where a time falls. */
 struct spot {
@@ -137,4 +139,57 @@ bool dea_protocol_cycle(const struct dea_protocol *protocol, size_t number,
   *out = (struct dea_recorded_cycle){low, within, start_s + cycle.start_s, start_s + cycle.end_s,
                                      cycle.level_V};
   return true;
+}
+
+// What repeats -----------------------------------------------------------------------------------
+
+/* Of the cycles of a waveform that are of one length and lie end to end: how many in a row, at
+ * most, have the same level. 0: they are not. */
+static size_t longest_run(const struct dea_protocol_step *step, double *length_s)
+{
+  const struct dea_waveform *w = step->waveform;
+  struct dea_wave_cycle first, next;
+  double end_s = 0, error_s = alike * w->end_s, level_V = NAN;
+  size_t run = 0, longest = 0;
+  if (!dea_waveform_cycle(w, 0, &first) || first.start_s != 0) {
+    return 0;
+  }
+  for (size_t i = 0; i < step->cycles && i < CYCLES_LOOKED_AT; i++) {
+    if (!dea_waveform_cycle(w, i, &next) || fabs(next.start_s - end_s) > error_s ||
+        fabs(next.end_s - next.start_s - first.end_s) > error_s) {
+      return 0;
+    }
+    run = next.level_V == level_V ? run + 1 : 1;
+    longest = run > longest ? run : longest;
+    level_V = next.level_V;
+    end_s = next.end_s;
+  }
+  *length_s = first.end_s;
+  return longest == CYCLES_LOOKED_AT ? step->cycles : longest;
+}
+
+double dea_protocol_period_s(const struct dea_protocol_step *step)
+{
+  double length_s;
+  if (step->lowest_V == step->highest_V) {
+    return section_s;
+  }
+  size_t run = longest_run(step, &length_s);
+  if (run > DEA_LEAK_VISITS || (run == step->cycles && run > 1)) {
+    return length_s;
+  }
+  return step->repeat.si > 1 ? step->waveform->end_s : (double)NAN;
+}
+
+double dea_protocol_learning_s(const struct dea_protocol_step *step)
+{
+  double period_s = dea_protocol_period_s(step), length_s, end_s = step->waveform->end_s;
+  double there_s = step->repeat.si * end_s;
+  if (period_s < end_s && step->lowest_V != step->highest_V) {
+    size_t run = longest_run(step, &length_s);
+    there_s = run < step->cycles ? (double)run * period_s : there_s;
+  }
+  // a visit ends with the first cycle that ends a second after it began
+  double learned_s = (DEA_LEAK_VISITS + 1) * period_s * fmax(1, ceil(DEA_LEAK_VISIT_S / period_s));
+  return learned_s < there_s ? learned_s : (double)INFINITY; // INFINITY for NAN
 }

@@ -6,6 +6,20 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The table that the list of recording.h is written for. */
+const struct dea_channel_meaning dea_channel_meanings[DEA_CHANNEL_KINDS] = {
+#define DEA_CHANNEL_MEANING(enumerator, name, si, display, factor, meaning)                        \
+  {name, si, display, factor, meaning},
+    DEA_CHANNEL_LIST(DEA_CHANNEL_MEANING)
+#undef DEA_CHANNEL_MEANING
+};
+
+const char *const dea_channel_names[DEA_CHANNEL_KINDS + 1] = {
+#define DEA_CHANNEL_NAME(enumerator, name, si, display, factor, meaning) name,
+    DEA_CHANNEL_LIST(DEA_CHANNEL_NAME)
+#undef DEA_CHANNEL_NAME
+        NULL};
+
 dea_status dea_recording_create(struct dea_context *ctx, struct dea_recording **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);

@@ -1,5 +1,5 @@
-/* The simulated film of a device that is no disc: its monitor beside a sweep, its charge beside the
- * closed form; and a disc with fibres that moves as 3d does. */
+/* The simulated film of a device that is no disc: its monitor beside a sweep; and a disc with
+ * fibres that moves as 3d does. */
 // ctest: solid
 #include "design_text.h"
 #include "film/film_of_design.h"
@@ -50,16 +50,6 @@ static int tear_down(void **state)
 {
   dea_film_of_design.destroy(ctx, film);
   return context_tear_down(state);
-}
-
-static struct dea_bench_model *open_at_rest(const char *name, double resistance_ohm, double limit_A)
-{
-  const struct dea_bench_circuit circuit = {resistance_ohm, limit_A};
-  struct dea_bench_model *model;
-  struct dea_bench_point at;
-  assert_int_equal(dea_film_of_design.open(ctx, film, name, "hub_z", &model), DEA_OK);
-  assert_int_equal(dea_film_of_design.begin(ctx, model, &circuit, &at), DEA_OK);
-  return model;
 }
 
 static struct dea_bench_point go(struct dea_bench_model *model, double length_s, double source_V,
@@ -136,14 +126,17 @@ TEST(test_fibre_disc_of_3d)
   dea_design_destroy(ctx, design);
 }
 
-/* Without a resistance the hub is where a sweep has it, also between the voltages of the table or
- * of model reduced, and whatever the sign. */
+/* Without a resistance the hub is where a sweep has it, also between the voltages of model reduced,
+ * and whatever the sign. */
 TEST(test_hub_of_a_sweep)
 {
   static const char *const sweep[] = {"sweep"};
+  const struct dea_bench_circuit circuit = {0, INFINITY};
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
+  struct dea_bench_model *model;
+  struct dea_bench_point at;
   double error;
   assert_int_equal(read_and_build(ctx, cone, NULL, 0, &design, &device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
@@ -151,54 +144,31 @@ TEST(test_hub_of_a_sweep)
   const struct dea_curve *curve = dea_result_find(result, "3d", "sweep");
   const int column = dea_column_find(ctx, "hub_z");
   const double rest = dea_point_get(&curve->points[0], column);
-  for (int reduced = 0; reduced < 2; reduced++) { // and a table
-    struct dea_bench_model *model = open_at_rest(reduced ? "reduced" : "lumped", 0, INFINITY);
-    for (size_t i = 0; i < curve->count; i++) {
-      const struct dea_load_point *p = &curve->points[i];
-      const double z = dea_point_get(p, column) - rest;
-      const struct dea_bench_point at = go(model, 0, -p->voltage_V, &error);
-      assert_close(at.point.centre_z_m - rest, z, 2e-3, 1e-12 + reduced * 1e-7 * fabs(rest));
-      assert_close(at.point.capacitance_F, p->capacitance_F, 1e-4, 0);
-    }
-    dea_film_of_design.close(ctx, model);
+  assert_int_equal(dea_film_of_design.open(ctx, film, "reduced", "hub_z", &model), DEA_OK);
+  assert_int_equal(dea_film_of_design.begin(ctx, model, &circuit, &at), DEA_OK);
+  for (size_t i = 0; i < curve->count; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    const double z = dea_point_get(p, column) - rest;
+    at = go(model, 0, -p->voltage_V, &error);
+    assert_close(at.point.centre_z_m - rest, z, 2e-3, 1e-12 + 1e-7 * fabs(rest));
+    assert_close(at.point.capacitance_F, p->capacitance_F, 1e-4, 0);
   }
+  dea_film_of_design.close(ctx, model);
   dea_result_destroy(ctx, result);
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);
 }
 
-/* At small voltages the film does not move: it is charged as a capacitor is. */
-TEST(test_charge)
-{
-  const double R = 1e7, to_V = 10;
-  struct dea_bench_model *model = open_at_rest("lumped", R, INFINITY);
-  double error = 0, time_s = 0, V = 0;
-  struct dea_bench_point at = go(model, 0, to_V, &error); // a jump of the source alone
-  assert_close(at.point.voltage_V, 0, 0, 1e-9);
-  const double C = at.point.capacitance_F, tau_s = R * C;
-  for (int i = 0; i < 200; i++) {
-    at = go(model, 0.01 * tau_s, to_V, &error);
-    time_s += 0.01 * tau_s;
-    V = to_V * (1 - exp(-time_s / tau_s));
-    assert_close(at.point.voltage_V, V, 0, 2e-3 * to_V); // of first order, in 400 steps
-    assert_true(error < 1e-4);
-  }
-  assert_close(at.point.current_A, (to_V - V) / R, 0.02, 0);
-  dea_film_of_design.close(ctx, model);
-  const double limit_A = 1e-9;
-  model = open_at_rest("lumped", 0, limit_A);
-  at = go(model, 0.5 * C * to_V / limit_A, to_V, &error); // half of its charge
-  assert_close(at.point.voltage_V, 0.5 * to_V, 1e-4, 0);
-  dea_film_of_design.close(ctx, model);
-}
-
 TEST(test_no_such_monitor)
 {
   struct dea_bench_model *model;
-  assert_int_equal(dea_film_of_design.open(ctx, film, "lumped", "hub_zm", &model), DEA_E_DESIGN);
+  assert_int_equal(dea_film_of_design.open(ctx, film, "reduced", "hub_zm", &model), DEA_E_DESIGN);
   assert_non_null(strstr(dea_context_message(ctx), "did you mean 'hub_z_m'?"));
-  assert_int_equal(dea_film_of_design.open(ctx, film, "lumped", "gauge_stretch", &model),
+  assert_int_equal(dea_film_of_design.open(ctx, film, "reduced", "gauge_stretch", &model),
                    DEA_E_DESIGN);
+  assert_int_equal(dea_film_of_design.open(ctx, film, "lumped", "hub_z", &model),
+                   DEA_E_UNSUPPORTED);
+  assert_non_null(strstr(dea_context_message(ctx), "write 'sim: {model: reduced}'"));
   dea_context_clear(ctx);
 }
 
