@@ -2,9 +2,9 @@
  * model is made, since PETSc and what it brings along take longer to load than most commands to
  * run. */
 #define _POSIX_C_SOURCE 200809L // pthread_mutex_t
+#include "model/solid_module.h"
 #include "base/module.h"
 #include "model/model.h"
-#include "model/solid_access.h"
 #include "model/solid_check.h"
 
 #include <pthread.h>
@@ -66,13 +66,10 @@ static dea_status open_module(struct dea_context *ctx)
   return DEA_OK;
 }
 
-dea_status dea_solid_access_open(struct dea_context *ctx, const struct dea_solid_access **out)
+dea_status dea_solid_module_symbol(struct dea_context *ctx, const char *name, const void **out)
 {
-  const void *access = NULL;
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_module_open(ctx, module_file, "dea_solid_access",
-                                                 "the 3D engine", advice, &access)));
-  *out = access;
-  return DEA_OK;
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(
+                            dea_module_open(ctx, module_file, name, "the 3D engine", advice, out)));
 }
 
 static dea_status create_inside(struct dea_context *ctx, const struct dea_device *device,
