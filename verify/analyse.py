@@ -42,7 +42,7 @@ FALSE = [
      "a design of that study has its settings"),
     ("src/study/states.c", "-Wanalyzer-null-dereference", "u[i] - v[i]",
      "films that were found have their shapes"),
-    ("src/model/solid/model3d/access.c", "-Wanalyzer-null-dereference", "on[n]",
+    ("src/api/engine/own_mesh.c", "-Wanalyzer-null-dereference", "on[n]",
      "find_nodes sets it or fails"),
     ("src/model/solid_module.c", "-Wanalyzer-null-dereference", "type->",
      "a module that opened has its type"),

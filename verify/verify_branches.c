@@ -11,7 +11,7 @@
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/model3d/buckling_branch.h"
-#include "model/solid/model3d/solver_state.h"
+#include "model/solid/model3d/solid_model.h"
 #include "study/design_file.h"
 
 extern const struct dea_model_type dea_solid_module;
@@ -97,7 +97,7 @@ static void solid_create(const char *refinement, const char *fibres, const char 
   device_create(refinement, "any", fibres, end);
   const struct dea_model_settings settings = dea_model_settings_of(design);
   verify_ok(ctx, dea_solid_module.create(ctx, device, &settings, &made));
-  solid = ((const struct dea_solver_state *)made)->outcome.owner.solid;
+  solid = ((const struct dea_model *)made)->solid;
   verify_ok(ctx, dea_device_mesh_create(ctx, device, &settings, &mesh));
   grid = mesh.grid; // as the model has it
   centre = dea_grid_nearest(grid, (const double[3]){0});

@@ -370,28 +370,6 @@ static int clamped_in_plane_strain(const void *self, const double X[3])
   return 2 | (X[0] < 1e-9 || X[0] > body->size[0] - 1e-9 ? 7 : 0);
 }
 
-/* The branch up to twice the square of the critical voltage: largest difference of the deflection.
- */
-static double follow_buckled(struct body *body, const struct dea_continuation_point *fork,
-                             double tolerance)
-{
-  struct dea_continuation_point point;
-  double worst = 0, h = body->size[2];
-  int unstable = 0;
-  size_t middle = dea_grid_nearest(body->grid, (const double[3]){0.5, 0, 0.5 * h});
-  verify_ok(ctx, dea_solid_continuation_switch(ctx, body->trace, 1, 0.1, &point));
-  while (point.load < 2 * fork->load) {
-    double A = dea_solid_displacement(body->solid)[3 * middle + 2] / h;
-    double wanted = sqrt(4.0 / 3 * (point.load / fork->load - 1));
-    double off = verify_relative("deflection", A, wanted, tolerance);
-    worst = fabs(off) > fabs(worst) ? off : worst;
-    unstable += point.unstable_modes;
-    verify_ok(ctx, dea_solid_continuation_step(ctx, body->trace, &point));
-  }
-  verify_absolute("unstable modes of the buckled film", unstable, 0, 0);
-  return worst;
-}
-
 static void buckle(size_t count, int order, double h, double tolerance)
 {
   const double pi = acos(-1), critical = 4 * pi * pi / 3 * h * h;
@@ -409,9 +387,7 @@ static void buckle(size_t count, int order, double h, double tolerance)
   verify_ok(ctx, dea_solid_continuation_locate(ctx, body.trace, &fork));
   double field = fork.voltage_V / h;
   double off = verify_relative("critical field", field * field, critical, tolerance);
-  double worst = follow_buckled(&body, &fork, tolerance);
-  printf("| %g | %zu, %d | %.6e | %+.2f %% | %+.2f %% |\n", h, count, order, field * field,
-         100 * off, 100 * worst);
+  printf("| %g | %zu, %d | %.6e | %+.2f %% |\n", h, count, order, field * field, 100 * off);
   body_destroy(&body);
 }
 
@@ -420,13 +396,10 @@ static void clamps(bool small)
   puts("\n## A film that buckles between clamps\n\n"
        "Free of stress, neo-Hookean, plane strain, length L = 1 between the clamps, thickness h. "
        "Flat, it is pushed with\neps (V/h)^2 h per width. A thin plate of it (bending stiffness "
-       "mu h^3/3) buckles at 4 pi^2 (mu h^3/3)/L^2; beyond, the\npush stays and the film grows "
-       "longer by the rest of the field over 4 mu: deflection of the middle\nA = h sqrt(4/3 (r - "
-       "1)), r the square of the voltage over the critical one. The bifurcation is located, the "
-       "branch\ntaken along the critical mode and followed to r = 2; it has no unstable mode. "
-       "Tolerance 1 %, 2 % on 8 elements.\n\n"
-       "| h/L | elements, order | eps (V/h)^2/mu | off | largest difference of A |\n"
-       "|---|---|---|---|---|");
+       "mu h^3/3) buckles at 4 pi^2 (mu h^3/3)/L^2. The\nbifurcation is located. Tolerance 1 %, "
+       "2 % on 8 elements.\n\n"
+       "| h/L | elements, order | eps (V/h)^2/mu | off |\n"
+       "|---|---|---|---|");
   buckle(8, 3, 0.01, 0.02);
   if (!small) {
     buckle(16, 3, 0.01, 0.01);

@@ -2,9 +2,9 @@
  * model is made, since PETSc and what it brings along take longer to load than most commands to
  * run. */
 #define _POSIX_C_SOURCE 200809L // pthread_mutex_t
+#include "model/solid_module.h"
 #include "base/module.h"
 #include "model/model.h"
-#include "model/solid_access.h"
 #include "model/solid_check.h"
 
 #include <pthread.h>
@@ -13,11 +13,6 @@
 static const char module_file[] = "dea_solid_module.so";
 static const char advice[] =
     "it is built when libpetsc-real-dev and libslepc-real-dev are installed";
-
-struct dea_model {
-  const struct dea_model_type *type; // of the module
-  struct dea_model *inner;
-};
 
 /* Whose turn it is: numbers are given and called out as at a counter, as a mutex alone may be given
  * to the same thread again and again. */
@@ -59,214 +54,125 @@ bool dea_solid_module_find(char *out, size_t size)
   return dea_module_find(module_file, out, size);
 }
 
+static const struct dea_model_type *module; // once a model was made
+
 /* It cannot be unloaded: MPI. */
-static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
+static dea_status open_module(struct dea_context *ctx)
 {
   const void *type = NULL;
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_module_open(ctx, module_file, "dea_solid_module",
-                                                 "the 3D engine", advice, &type)));
-  *out = type;
-  return DEA_OK;
-}
-
-dea_status dea_solid_access_open(struct dea_context *ctx, const struct dea_solid_access **out)
-{
-  const void *access = NULL;
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_module_open(ctx, module_file, "dea_solid_access",
-                                                 "the 3D engine", advice, &access)));
-  *out = access;
-  return DEA_OK;
-}
-
-static void destroy(struct dea_context *ctx, struct dea_model *model)
-{
-  if (model != NULL) {
-    dea_solid_enter();
-    model->type->destroy(ctx, model->inner);
-    dea_solid_leave(DEA_OK);
-    dea_free(ctx, model);
+  if (module != NULL) { // written once: others read it out of turn
+    return DEA_OK;
   }
+  DEA_TRY(ctx,
+          dea_module_open(ctx, module_file, "dea_solid_module", "the 3D engine", advice, &type));
+  module = type;
+  return DEA_OK;
+}
+
+dea_status dea_solid_module_symbol(struct dea_context *ctx, const char *name, const void **out)
+{
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(
+                            dea_module_open(ctx, module_file, name, "the 3D engine", advice, out)));
+}
+
+static dea_status create_inside(struct dea_context *ctx, const struct dea_device *device,
+                                const struct dea_model_settings *settings, struct dea_model **out)
+{
+  DEA_TRY(ctx, open_module(ctx));
+  return DEA_CHAIN(ctx, module->create(ctx, device, settings, out));
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
   *out = NULL;
-  const struct dea_model_type *type = NULL;
-  DEA_TRY(ctx, open_module(ctx, &type));
-  struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
-  DEA_TRY_MEMORY(model != NULL);
-  model->type = type;
-  struct dea_model_settings own = settings != NULL ? *settings : (struct dea_model_settings){0};
-  own.mesh_from = own.mesh_from != NULL ? own.mesh_from->inner : NULL;
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): open_module sets it or fails
-  dea_status status = DEA_SOLID_IN_TURN(type->create(ctx, device, &own, &model->inner));
-  if (status != DEA_OK) {
-    dea_free(ctx, model);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(create_inside(ctx, device, settings, out)));
+}
+
+static void destroy(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model != NULL) {
+    dea_solid_enter();
+    module->destroy(ctx, model);
+    dea_solid_leave(DEA_OK);
   }
-  *out = model;
-  return DEA_OK;
 }
 
 static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
 {
-  const struct dea_model_type *type = NULL;
-  DEA_TRY(ctx, open_module(ctx, &type));
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(type->libraries(ctx, out, size)));
-}
-
-static const struct dea_event *limit(const struct dea_model *model)
-{
-  return model->type->limit(model->inner);
-}
-
-static const struct dea_event *passed(const struct dea_model *model)
-{
-  return model->type->passed(model->inner);
-}
-
-static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
-                        struct dea_load_point *out)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->solve(ctx, model->inner, voltage_V, out)));
-}
-
-static dea_status indent(struct dea_context *ctx, struct dea_model *model,
-                         const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
-{
-  return DEA_CHAIN(ctx,
-                   DEA_SOLID_IN_TURN(model->type->indent(ctx, model->inner, probe, depth_m, out)));
-}
-
-static dea_status move(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_control *control, double value, struct dea_load_point *out)
-{
-  return DEA_CHAIN(ctx,
-                   DEA_SOLID_IN_TURN(model->type->move(ctx, model->inner, control, value, out)));
-}
-
-static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
-                             const struct dea_control *coordinate, int with,
-                             struct dea_compliance *out)
-{
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(model->type->compliance(ctx, model->inner, coordinate, with, out)));
-}
-
-static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
-                            const struct dea_path_options *options, dea_point_sink points,
-                            dea_event_sink events, void *user)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->long_path(ctx, model->inner, options, points,
-                                                                 events, user)));
-}
-
-static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
-                         double *stiffness_N_per_m4)
-{
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(model->type->soften(ctx, model->inner, count, stiffness_N_per_m4)));
-}
-
-static dea_status push(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_push *perturbation, struct dea_load_point *out, bool *found)
-{
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(model->type->push(ctx, model->inner, perturbation, out, found)));
-}
-
-static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
-                           const struct dea_gradient_request *ask, double *out)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->gradient(ctx, model->inner, ask, out)));
-}
-
-static dea_status observe(struct dea_context *ctx, struct dea_model *model,
-                          struct dea_observation *out)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->observe(ctx, model->inner, out)));
-}
-
-static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->errors(ctx, model->inner, error)));
-}
-
-static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t *count)
-{
-  return model->type->passes(model->inner, count);
-}
-
-static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->profile(ctx, model->inner, out)));
-}
-
-static dea_status modes(struct dea_context *ctx, struct dea_model *model,
-                        const struct dea_load_point *at, size_t count,
-                        struct dea_load_point *points, struct dea_field_mesh **shapes)
-{
-  return DEA_CHAIN(
-      ctx, DEA_SOLID_IN_TURN(model->type->modes(ctx, model->inner, at, count, points, shapes)));
-}
-
-static dea_status respond(struct dea_context *ctx, struct dea_model *model,
-                          const struct dea_load_point *at,
-                          const struct dea_ac_excitation *excitation, const double *frequency_Hz,
-                          size_t count, struct dea_load_point *points)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->respond(ctx, model->inner, at, excitation,
-                                                               frequency_Hz, count, points)));
-}
-
-static const double *answers(const struct dea_model *model)
-{
-  return model->type->answers(model->inner);
-}
-
-static dea_status fields(struct dea_context *ctx, struct dea_model *model,
-                         enum dea_fields_part part, struct dea_field_mesh **out)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->fields(ctx, model->inner, part, out)));
-}
-
-static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->save(ctx, model->inner, out)));
-}
-
-static dea_status load(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_state *state)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->load(ctx, model->inner, state)));
-}
-
-static dea_status begin(struct dea_context *ctx, struct dea_model *model,
-                        const struct dea_time_options *options, struct dea_load_point *out)
-{
-  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(model->type->begin(ctx, model->inner, options, out)));
-}
-
-static dea_status advance(struct dea_context *ctx, struct dea_model *model,
-                          const struct dea_time_step *step, struct dea_load_point *out,
-                          double *error)
-{
-  return DEA_CHAIN(ctx,
-                   DEA_SOLID_IN_TURN(model->type->advance(ctx, model->inner, step, out, error)));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(open_module(ctx)));
+  return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(module->libraries(ctx, out, size)));
 }
 
 static void accept(struct dea_model *model)
 {
   dea_solid_enter();
-  model->type->accept(model->inner);
+  module->accept(model);
   dea_solid_leave(DEA_OK);
+}
+
+static const struct dea_event *limit(const struct dea_model *model)
+{
+  return module->limit(model);
+}
+
+static const struct dea_event *passed(const struct dea_model *model)
+{
+  return module->passed(model);
+}
+
+static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t *count)
+{
+  return module->passes(model, count);
+}
+
+static const double *answers(const struct dea_model *model)
+{
+  return module->answers(model);
 }
 
 static void size(const struct dea_model *model, struct dea_model_size *out)
 {
-  model->type->size(model->inner, out);
+  module->size(model, out);
 }
+
+/* A function of struct dea_model_type in turn: what it hands on, and what it takes behind the
+ * context and the model. */
+#define IN_TURN(name, arguments, ...)                                                              \
+  static dea_status name(struct dea_context *ctx, struct dea_model *model, __VA_ARGS__)            \
+  {                                                                                                \
+    return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(module->name arguments));                              \
+  }
+
+IN_TURN(solve, (ctx, model, voltage_V, out), double voltage_V, struct dea_load_point *out)
+IN_TURN(indent, (ctx, model, tip, depth_m, out), const struct dea_probe *tip, double depth_m,
+        struct dea_load_point *out)
+IN_TURN(move, (ctx, model, control, value, out), const struct dea_control *control, double value,
+        struct dea_load_point *out)
+IN_TURN(compliance, (ctx, model, coordinate, with, out), const struct dea_control *coordinate,
+        int with, struct dea_compliance *out)
+IN_TURN(long_path, (ctx, model, options, points, events, user),
+        const struct dea_path_options *options, dea_point_sink points, dea_event_sink events,
+        void *user)
+IN_TURN(soften, (ctx, model, count, stiffness_N_per_m4), size_t count, double *stiffness_N_per_m4)
+IN_TURN(push, (ctx, model, perturbation, out, found), const struct dea_push *perturbation,
+        struct dea_load_point *out, bool *found)
+IN_TURN(gradient, (ctx, model, ask, out), const struct dea_gradient_request *ask, double *out)
+IN_TURN(observe, (ctx, model, out), struct dea_observation *out)
+IN_TURN(errors, (ctx, model, error), double *error)
+IN_TURN(profile, (ctx, model, out), struct dea_profile *out)
+IN_TURN(modes, (ctx, model, at, count, points, shapes), const struct dea_load_point *at,
+        size_t count, struct dea_load_point *points, struct dea_field_mesh **shapes)
+IN_TURN(respond, (ctx, model, at, excitation, frequency_Hz, count, points),
+        const struct dea_load_point *at, const struct dea_ac_excitation *excitation,
+        const double *frequency_Hz, size_t count, struct dea_load_point *points)
+IN_TURN(fields, (ctx, model, part, out), enum dea_fields_part part, struct dea_field_mesh **out)
+IN_TURN(save, (ctx, model, out), struct dea_state *out)
+IN_TURN(load, (ctx, model, state), const struct dea_state *state)
+IN_TURN(begin, (ctx, model, options, out), const struct dea_time_options *options,
+        struct dea_load_point *out)
+IN_TURN(advance, (ctx, model, step, out, error), const struct dea_time_step *step,
+        struct dea_load_point *out, double *error)
 
 const struct dea_model_type dea_model_3d = {
     .name = "3d",

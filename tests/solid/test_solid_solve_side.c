@@ -8,7 +8,7 @@
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/model3d/buckling_branch.h"
-#include "model/solid/model3d/solver_state.h"
+#include "model/solid/model3d/solid_model.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
@@ -123,7 +123,7 @@ static void create(int fibres, enum dea_outer_end end)
 {
   device = slack(fibres, end);
   assert_ok(dea_solid_module.create(ctx, &device, &(struct dea_model_settings){0}, &made));
-  solid = ((const struct dea_solver_state *)made)->outcome.owner.solid;
+  solid = ((const struct dea_model *)made)->solid;
   assert_ok(dea_device_mesh_create(ctx, &device, &(struct dea_model_settings){0}, &mesh));
   grid = mesh.grid; // as the model has it
   centre = dea_grid_nearest(grid, (const double[3]){0});

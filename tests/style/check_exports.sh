@@ -22,7 +22,7 @@ for module in "$(dirname "$library")"/dea_*_module.so; do
   [ -f "$module" ] || continue
   name=$(basename "$module" .so)
   others=$(nm -D --defined-only "$module" | awk '$2 !~ /[Ww]/ { print $3 }' |
-    grep -vxE "$name|dea_solid_access|_edata|_end|__bss_start|_init|_fini" || true)
+    grep -vxE "$name|dea_own_mesh|_edata|_end|__bss_start|_init|_fini" || true)
   [ -z "$others" ] || { echo "$name shows more than itself: $others"; bad=1; }
 done
 exit $bad

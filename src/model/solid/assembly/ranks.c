@@ -82,7 +82,7 @@ dea_status dea_solid_start(struct dea_context *ctx)
     return DEA_OK;
   }
   start_mpi_alone();
-  PETSC_MPI_THREAD_REQUIRED = MPI_THREAD_SERIALIZED; // threads come in turn (solid_access.h)
+  PETSC_MPI_THREAD_REQUIRED = MPI_THREAD_SERIALIZED; // threads come in turn (solid_module.h)
   if (PetscInitialize(&argc, &argv, NULL, NULL) != 0) {
     return dea_fail(ctx, DEA_E_TOOL, "PETSc could not be started");
   }

@@ -63,8 +63,6 @@ struct dea_adjoint {
   size_t *open;                  // numbers of those that are not there yet
   double *theta;                 // [all] L^T theta of the last assembly, of loads C / L
   double stiff;                  // kappa of the factor over that of the solid
-  int solutions;
-  bool factorised;
 };
 
 static size_t most_of(const struct dea_adjoint *a)
@@ -151,8 +149,9 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
   find_rows(a);
   // of the state before the last step, which was a 1e-8 of the way, or of this one; other points
   // may have been in touch then
-  a->factorised = a->touches || !(s->found.factor_fits || s->found.stiff_factor_fits);
-  if (a->factorised) { // K at a finite kappa may have a negative pivot
+  if (a->touches ||
+      !(s->found.factor_fits ||
+        s->found.stiff_factor_fits)) { // K at a finite kappa may have a negative pivot
     DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
   }
   a->stiff = s->found.factor_fits ? 1 : DEA_SOLID_STIFF;
@@ -247,9 +246,7 @@ static dea_status solve(struct dea_context *ctx, struct dea_adjoint *a, size_t c
   for (size_t k = 0; k < count; k++) {
     dea_solid_release_held(a->s, a->right + k * a->dofs);
   }
-  DEA_TRY(ctx, dea_solid_solve_many(ctx, a->s, count, a->right, out));
-  a->solutions += (int)count;
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_solid_solve_many(ctx, a->s, count, a->right, out));
 }
 
 /* left . kappa left, what is left of the second equation of an answer; change: the largest kappa
@@ -538,14 +535,4 @@ void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, do
     const struct row *row = &a->row[i - a->pressures];
     out[i] = row->root > 0 ? row->stiffness / row->root * row_times(row, v) : 0;
   }
-}
-
-int dea_adjoint_solutions(const struct dea_adjoint *a)
-{
-  return a->solutions;
-}
-
-bool dea_adjoint_factorised(const struct dea_adjoint *a)
-{
-  return a->factorised;
 }

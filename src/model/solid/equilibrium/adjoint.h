@@ -49,6 +49,3 @@ void dea_adjoint_add_constraints(const struct dea_adjoint *adjoint, double times
 /* Multipliers with which the solid as good as incompressible and the penalties of what is held
  * answer a motion v, out [multipliers]: kappa M^-1 B^T v. */
 void dea_adjoint_mode_pressures(const struct dea_adjoint *adjoint, const double *v, double *out);
-/* Solutions with the factor that all answers took, and whether it is a new one. */
-int dea_adjoint_solutions(const struct dea_adjoint *adjoint);
-bool dea_adjoint_factorised(const struct dea_adjoint *adjoint);

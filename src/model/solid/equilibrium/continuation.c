@@ -35,7 +35,6 @@ enum { MAX_ROUNDS = 20 };             // of regula falsi
 static const double zero_rtol = 1e-8; // of what it was
 static const double singular_offset = 0.03; // of the bracket: first distance from a singular point
 enum { MAX_OFFSETS = 4 };                   // attempts, each twice as far from it
-enum { MAX_SWITCHES = 6 };                  // attempts at another branch, each half as far
 
 /* An equilibrium on the path. */
 struct dea_continuation_path_point {
@@ -69,10 +68,9 @@ struct dea_solid_continuation {
   struct dea_continuation_plane plane;
   double *rate, *right, *start, *mode; // [dofs] each: work; mode: critical one, unit size
   double step, step_most, step_least;
-  bool rough;                          // points on the way need not be exact
-  bool arc;                            // its last two points make a parabola, which is followed
-  enum dea_continuation_event event;   // between before and last
-  enum dea_continuation_event located; // what critical is
+  bool rough;                        // points on the way need not be exact
+  bool arc;                          // its last two points make a parabola, which is followed
+  enum dea_continuation_event event; // between before and last
 };
 
 /* Length of a displacement in the metric. */
@@ -513,7 +511,6 @@ static void accept_point(struct dea_solid_continuation *t)
   t->tangent_load = t->last.slope;
   t->event = event_between(&t->before, &t->last);
   t->arc = t->rough;
-  t->located = DEA_CONTINUATION_NOTHING;
 }
 
 dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid_continuation *t,
@@ -892,55 +889,6 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
     set_controls(NULL, t, t->last.load); // where it was
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  t->located = t->event;
   report_point(t, &t->critical, t->event, point);
-  return DEA_OK;
-}
-
-/* ---- the other branch ---- */
-
-/* Onto the branch at a distance along the critical mode. */
-static dea_status switch_along(struct dea_context *ctx, struct dea_solid_continuation *t,
-                               double distance)
-{
-  int iterations;
-  DEA_TRY(ctx, return_to(ctx, t, &t->critical));
-  double size = size_of(t, t->mode);
-  for (size_t i = 0; i < t->s->problem.dofs; i++) {
-    t->start[i] = distance / size * t->mode[i];
-  }
-  DEA_TRY(ctx, predict_from(ctx, t, t->start, 0));
-  set_plane(t, t->mode, 0, &t->critical, distance, 0);
-  DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
-  for (size_t i = 0; i < t->s->problem.dofs; i++) {
-    t->start[i] = t->s->state.u[i] - t->critical.state[i];
-  }
-  return DEA_OK;
-}
-
-dea_status dea_solid_continuation_switch(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                         int side, double distance,
-                                         struct dea_continuation_point *point)
-{
-  if (t->located != DEA_CONTINUATION_BIFURCATION || !(distance > 0)) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "another branch starts at a bifurcation that was located");
-  }
-  dea_status status = DEA_OK;
-  for (int i = 0; i < MAX_SWITCHES; i++, distance /= 2) {
-    dea_context_clear(ctx);
-    status = switch_along(ctx, t, side < 0 ? -distance : distance);
-    if (!dea_solid_may_shorten(status)) {
-      break;
-    }
-  }
-  DEA_TRY(ctx, status);
-  struct dea_continuation_path_point old = t->before;
-  t->before = t->last;
-  t->last = old;
-  t->last.arc = t->critical.arc + distance;
-  DEA_TRY(ctx, record_point(ctx, t, t->start, t->load - t->critical.load, true, &t->last));
-  t->event = DEA_CONTINUATION_NOTHING;
-  t->step = distance;
-  report_point(t, &t->last, t->event, point);
   return DEA_OK;
 }

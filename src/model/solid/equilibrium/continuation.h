@@ -71,14 +71,6 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx,
                                          struct dea_solid_continuation *trace,
                                          struct dea_continuation_point *point);
 
-/* From the bifurcation that dea_solid_continuation_locate has found to the other branch, along the
- * critical mode (side 1) or against it (-1); steps go on from there. distance: from the
- * bifurcation, in s. The mode's component of largest size is positive. DEA_E_ARGUMENT where none
- * was located. */
-dea_status dea_solid_continuation_switch(struct dea_context *ctx,
-                                         struct dea_solid_continuation *trace, int side,
-                                         double distance, struct dea_continuation_point *point);
-
 /* dea_solid_continuation_create to the controls `goal` [control_count]; the path is prepared. */
 dea_status dea_continuation_create_to(struct dea_context *ctx, struct dea_solid *s,
                                       const double *goal,

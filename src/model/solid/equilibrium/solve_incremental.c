@@ -49,7 +49,7 @@ static void start_here(struct search *a)
 static dea_status report_point(struct dea_context *ctx, const struct search *a,
                                enum dea_solid_stop_kind where)
 {
-  return a->watch != NULL ? a->watch->points(ctx, a->watch->user, where) : DEA_OK;
+  return a->watch->points(ctx, a->watch->user, where);
 }
 
 /* How the film has changed from the last point that the sink has looked at to where the solid is. A
@@ -59,7 +59,7 @@ static dea_status find_change(struct dea_context *ctx, const struct search *a,
                               struct dea_solid_change *out)
 {
   *out = (struct dea_solid_change){.taut = true};
-  return a->watch != NULL ? a->watch->change(ctx, a->watch->user, out) : DEA_OK;
+  return a->watch->change(ctx, a->watch->user, out);
 }
 
 // Flat films -------------------------------------------------------------------------------------
@@ -222,7 +222,7 @@ static dea_status check_modes(struct dea_context *ctx, const struct search *a, i
 {
   struct dea_solid *s = a->s;
   double value;
-  if (unstable <= *of_mesh || a->watch == NULL || !a->watch->taut(a->watch->user) ||
+  if (unstable <= *of_mesh || !a->watch->taut(a->watch->user) ||
       is_deflected(s, s->problem.length_m)) {
     *of_mesh = unstable < *of_mesh ? unstable : *of_mesh;
     return DEA_OK;

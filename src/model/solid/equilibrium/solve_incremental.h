@@ -43,7 +43,7 @@ struct dea_solid_watch {
 /* As dea_load_steps_solve. Load steps that fail or leave their path of equilibria - for another
  * branch or past a limit point - are taken back, and the path is followed by arc length, around a
  * bifurcation and, where that leads to a stable state, past a limit point too; then by load steps
- * again. watch: sees each point of such a path; NULL: nobody does. taut: the film has tension. A
+ * again. watch: sees each point of such a path. taut: the film has tension. A
  * failure leaves the solid at the last equilibrium that was found, at report->load_factor of the
  * increment: DEA_E_NO_EQUILIBRIUM beyond a limit point; otherwise the status of the last load step.
  * *stop says what is known; stop->load_factor is that of the last limit point that was found or

@@ -62,14 +62,22 @@ struct list {
   size_t count, capacity;
 };
 
+/* Once the status is not DEA_OK, nothing more is read or said: what reads returns 0. */
 struct reader {
   struct dea_context *ctx;
+  dea_status status;
   const char *file; // interned; NULL: none, and no findings
   const char *at;
   size_t line;
   const char *section;
   int version; // 2 or 4
   struct list nodes, elements, physicals, members;
+  union {
+    struct raw_node node;
+    struct raw_element element;
+    struct physical physical;
+    struct member member;
+  } spare; // the item of a list for which there was no memory
 };
 
 // Faults, lists, words ----------------------------------------------------------------------------
@@ -80,33 +88,38 @@ static dea_status fault(struct reader *r, size_t line, const char *format, ...)
 {
   char said[SAID_MAX];
   va_list args;
+  if (r->status != DEA_OK) {
+    return r->status;
+  }
   va_start(args, format);
   vsnprintf(said, sizeof said, format, args);
   va_end(args);
-  if (r->file == NULL) {
-    return dea_fail(r->ctx, DEA_E_DESIGN, "%s", said);
-  }
   const struct dea_location location = {r->file, line, 0};
-  DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, location, "%s", said));
-  return line > 0 ? dea_fail(r->ctx, DEA_E_DESIGN, "%s:%zu: %s", r->file, line, said)
-                  : dea_fail(r->ctx, DEA_E_DESIGN, "%s: %s", r->file, said);
+  if (r->file != NULL) {
+    r->status = dea_finding_add(r->ctx, DEA_ERROR, location, "%s", said);
+  }
+  if (r->status == DEA_OK) {
+    r->status = r->file == NULL ? dea_fail(r->ctx, DEA_E_DESIGN, "%s", said)
+                : line > 0      ? dea_fail(r->ctx, DEA_E_DESIGN, "%s:%zu: %s", r->file, line, said)
+                                : dea_fail(r->ctx, DEA_E_DESIGN, "%s: %s", r->file, said);
+  }
+  return r->status;
 }
 
-/* Room for one more, zeroed; NULL for want of memory. */
-static void *list_add(struct dea_context *ctx, struct list *list, size_t size)
+/* Room for one more, zeroed. */
+static void *list_add(struct reader *r, struct list *list, size_t size)
 {
   if (list->count == list->capacity) {
     size_t capacity = list->capacity > 0 ? 2 * list->capacity : 64;
-    void *moved = dea_resize(ctx, list->data, capacity, size);
+    void *moved = dea_resize(r->ctx, list->data, capacity, size);
     if (moved == NULL) {
-      return NULL;
+      r->status = r->status == DEA_OK ? DEA_E_MEMORY : r->status;
+      return memset(&r->spare, 0, sizeof r->spare);
     }
     list->data = moved;
     list->capacity = capacity;
   }
-  void *item = (char *)list->data + list->count++ * size;
-  memset(item, 0, size);
-  return item;
+  return memset((char *)list->data + list->count++ * size, 0, size);
 }
 
 static void skip_space(struct reader *r)
@@ -131,79 +144,70 @@ static size_t word_length(const char *word)
 }
 
 /* What stands there is not what was wanted. */
-static dea_status not_that(struct reader *r, const char *wanted)
+static void not_that(struct reader *r, const char *wanted)
 {
   size_t n = word_length(r->at);
   if (n == 0) {
-    return fault(r, r->line, "the file ends in %s", r->section);
+    fault(r, r->line, "the file ends in %s", r->section);
+  } else {
+    fault(r, r->line, "'%.*s' in %s is not %s", (int)(n < 30 ? n : 30), r->at, r->section, wanted);
   }
-  return fault(r, r->line, "'%.*s' in %s is not %s", (int)(n < 30 ? n : 30), r->at, r->section,
-               wanted);
 }
 
-static dea_status read_int(struct reader *r, const char *what, long long *out)
+static long long read_int(struct reader *r, const char *what)
 {
   char *end;
   skip_space(r);
-  *out = strtoll(r->at, &end, 10);
-  if (end == r->at || !is_end_of_word(*end) || *out > INT32_MAX || *out < -INT32_MAX) {
-    return not_that(r, what);
+  const long long value = strtoll(r->at, &end, 10);
+  if (end == r->at || !is_end_of_word(*end) || value > INT32_MAX || value < -INT32_MAX) {
+    not_that(r, what);
   }
-  r->at = end;
-  return DEA_OK;
+  r->at = r->status == DEA_OK ? end : r->at;
+  return r->status == DEA_OK ? value : 0;
 }
 
-static dea_status read_count(struct reader *r, const char *what, size_t *out)
+static size_t read_count(struct reader *r, const char *what)
 {
-  long long value;
-  *out = 0;
-  DEA_TRY(r->ctx, read_int(r, what, &value));
+  const long long value = read_int(r, what);
   if (value < 0) {
-    return fault(r, r->line, "%lld in %s is not %s", value, r->section, what);
+    fault(r, r->line, "%lld in %s is not %s", value, r->section, what);
   }
-  *out = (size_t)value;
-  return DEA_OK;
+  return r->status == DEA_OK ? (size_t)value : 0;
 }
 
-static dea_status read_number(struct reader *r, double *out)
+static double read_number(struct reader *r)
 {
   char *end;
   skip_space(r);
-  *out = strtod(r->at, &end);
-  if (end == r->at || !is_end_of_word(*end) || !isfinite(*out)) {
-    return not_that(r, "a number");
+  const double value = strtod(r->at, &end);
+  if (end == r->at || !is_end_of_word(*end) || !isfinite(value)) {
+    not_that(r, "a number");
   }
-  r->at = end;
-  return DEA_OK;
+  r->at = r->status == DEA_OK ? end : r->at;
+  return r->status == DEA_OK ? value : 0;
 }
 
-static dea_status skip_numbers(struct reader *r, size_t count)
+static void skip_numbers(struct reader *r, size_t count)
 {
-  double unused;
-  for (size_t i = 0; i < count; i++) {
-    DEA_TRY(r->ctx, read_number(r, &unused));
+  for (size_t i = 0; i < count && r->status == DEA_OK; i++) {
+    read_number(r);
   }
-  return DEA_OK;
 }
 
 // Sections of the file ----------------------------------------------------------------------------
 
-static dea_status read_format(struct reader *r)
+static void read_format(struct reader *r)
 {
-  double version;
-  long long binary, size;
-  DEA_TRY(r->ctx, read_number(r, &version));
-  DEA_TRY(r->ctx, read_int(r, "0 (ASCII) or 1 (binary)", &binary));
-  DEA_TRY(r->ctx, read_int(r, "a size", &size));
+  const double version = read_number(r);
+  const long long binary = read_int(r, "0 (ASCII) or 1 (binary)");
+  read_int(r, "a size");
   if (binary != 0) {
-    return fault(r, r->line, "the file is binary: write it as ASCII (Mesh.Binary = 0)");
-  }
-  if (version != 2.2 && version != 4.1) {
-    return fault(r, r->line, "format %g is not known: 4.1 and 2.2 are (Mesh.MshFileVersion = 4.1)",
-                 version);
+    fault(r, r->line, "the file is binary: write it as ASCII (Mesh.Binary = 0)");
+  } else if (version != 2.2 && version != 4.1) {
+    fault(r, r->line, "format %g is not known: 4.1 and 2.2 are (Mesh.MshFileVersion = 4.1)",
+          version);
   }
   r->version = version < 4 ? 2 : 4;
-  return DEA_OK;
 }
 
 static struct physical *find_physical(const struct reader *r, int dimension, long long tag)
@@ -217,227 +221,184 @@ static struct physical *find_physical(const struct reader *r, int dimension, lon
   return NULL;
 }
 
-static dea_status add_physical(struct reader *r, int dimension, long long tag,
-                               struct physical **out)
+static struct physical *add_physical(struct reader *r, int dimension, long long tag)
 {
-  *out = list_add(r->ctx, &r->physicals, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  (*out)->dimension = dimension;
-  (*out)->tag = tag;
-  (*out)->index = SIZE_MAX;
-  snprintf((*out)->name, NAME_SIZE, "%lld", tag);
-  return DEA_OK;
+  struct physical *physical = list_add(r, &r->physicals, sizeof *physical);
+  *physical = (struct physical){.dimension = dimension, .tag = tag, .index = SIZE_MAX};
+  snprintf(physical->name, NAME_SIZE, "%lld", tag);
+  return physical;
 }
 
-static dea_status read_physical_names(struct reader *r)
+static void read_physical_names(struct reader *r)
 {
-  size_t count;
-  DEA_TRY(r->ctx, read_count(r, "a number of names", &count));
-  for (size_t i = 0; i < count; i++) {
-    size_t dimension;
-    long long tag;
-    struct physical *physical;
-    DEA_TRY(r->ctx, read_count(r, "a dimension", &dimension));
-    DEA_TRY(r->ctx, read_int(r, "the number of a group", &tag));
+  const size_t count = read_count(r, "a number of names");
+  for (size_t i = 0; i < count && r->status == DEA_OK; i++) {
+    const size_t dimension = read_count(r, "a dimension");
+    const long long tag = read_int(r, "the number of a group");
     skip_space(r);
-    size_t n = *r->at == '"' ? strcspn(r->at + 1, "\"\n") : 0;
+    const size_t n = *r->at == '"' ? strcspn(r->at + 1, "\"\n") : 0;
     if (n == 0 || r->at[1 + n] != '"') {
-      return not_that(r, "a name in quotes");
+      not_that(r, "a name in quotes");
+    } else if (n >= NAME_SIZE) {
+      fault(r, r->line, "a name of %zu bytes is too long: %d at most", n, NAME_SIZE - 1);
+    } else if (dimension > 3 || find_physical(r, (int)dimension, tag) != NULL) {
+      fault(r, r->line, "the group %lld of dimension %zu is there twice, or cannot be", tag,
+            dimension);
+    } else {
+      snprintf(add_physical(r, (int)dimension, tag)->name, NAME_SIZE, "%.*s", (int)n, r->at + 1);
+      r->at += n + 2;
     }
-    if (n >= NAME_SIZE) {
-      return fault(r, r->line, "a name of %zu bytes is too long: %d at most", n, NAME_SIZE - 1);
-    }
-    if (dimension > 3 || find_physical(r, (int)dimension, tag) != NULL) {
-      return fault(r, r->line, "the group %lld of dimension %zu is there twice, or cannot be", tag,
-                   dimension);
-    }
-    DEA_TRY(r->ctx, add_physical(r, (int)dimension, tag, &physical));
-    memcpy(physical->name, r->at + 1, n);
-    physical->name[n] = '\0';
-    r->at += n + 2;
   }
-  return DEA_OK;
 }
 
 /* Which entities of 4.1 are in which groups. */
-static dea_status read_entities(struct reader *r)
+static void read_entities(struct reader *r)
 {
   size_t counts[4];
   for (int i = 0; i < 4; i++) {
-    DEA_TRY(r->ctx, read_count(r, "a number of entities", &counts[i]));
+    counts[i] = read_count(r, "a number of entities");
   }
   for (int dimension = 0; dimension < 4; dimension++) {
-    for (size_t i = 0; i < counts[dimension]; i++) {
-      long long tag;
-      size_t groups, bounds;
-      DEA_TRY(r->ctx, read_int(r, "the number of an entity", &tag));
-      DEA_TRY(r->ctx, skip_numbers(r, dimension == 0 ? 3 : 6));
-      DEA_TRY(r->ctx, read_count(r, "a number of groups", &groups));
-      for (size_t k = 0; k < groups; k++) {
-        struct member *member = list_add(r->ctx, &r->members, sizeof *member);
-        DEA_TRY_MEMORY(member != NULL);
-        *member = (struct member){.dimension = dimension, .entity = tag};
-        DEA_TRY(r->ctx, read_int(r, "the number of a group", &member->physical));
-        member->physical = llabs(member->physical); // negative: the other way round
+    for (size_t i = 0; i < counts[dimension] && r->status == DEA_OK; i++) {
+      const long long tag = read_int(r, "the number of an entity");
+      skip_numbers(r, dimension == 0 ? 3 : 6);
+      for (size_t left = read_count(r, "a number of groups"); left > 0 && r->status == DEA_OK;
+           left--) {
+        struct member *member = list_add(r, &r->members, sizeof *member);
+        // negative: the other way round
+        *member = (struct member){dimension, tag, llabs(read_int(r, "the number of a group"))};
       }
       if (dimension > 0) {
-        DEA_TRY(r->ctx, read_count(r, "a number of bounds", &bounds));
-        DEA_TRY(r->ctx, skip_numbers(r, bounds));
+        skip_numbers(r, read_count(r, "a number of bounds"));
       }
     }
   }
-  return DEA_OK;
 }
 
-static dea_status add_node(struct reader *r, long long tag, struct raw_node **out)
-{
-  *out = list_add(r->ctx, &r->nodes, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  (*out)->tag = tag;
-  return DEA_OK;
-}
-
-static dea_status read_place(struct reader *r, struct raw_node *node)
+static void read_place(struct reader *r, struct raw_node *node)
 {
   for (int i = 0; i < 3; i++) {
-    DEA_TRY(r->ctx, read_number(r, &node->x[i]));
+    node->x[i] = read_number(r);
   }
-  return DEA_OK;
 }
 
-static dea_status read_nodes_2(struct reader *r)
+static void read_nodes_2(struct reader *r)
 {
-  size_t count;
-  DEA_TRY(r->ctx, read_count(r, "a number of nodes", &count));
-  for (size_t i = 0; i < count; i++) {
-    long long tag;
-    struct raw_node *node;
-    DEA_TRY(r->ctx, read_int(r, "the number of a node", &tag));
-    DEA_TRY(r->ctx, add_node(r, tag, &node));
-    DEA_TRY(r->ctx, read_place(r, node));
+  const size_t count = read_count(r, "a number of nodes");
+  for (size_t i = 0; i < count && r->status == DEA_OK; i++) {
+    struct raw_node *node = list_add(r, &r->nodes, sizeof *node);
+    node->tag = read_int(r, "the number of a node");
+    read_place(r, node);
   }
-  return DEA_OK;
 }
 
-static dea_status read_nodes_4(struct reader *r)
+/* Head of a section of 4.1: blocks, items, least and largest number. Returns the blocks. */
+static size_t read_head(struct reader *r, const char *what)
 {
-  size_t head[4]; // blocks, nodes, least and largest number
-  for (int i = 0; i < 4; i++) {
-    DEA_TRY(r->ctx, read_count(r, "a number of nodes", &head[i]));
+  const size_t blocks = read_count(r, what);
+  for (int i = 0; i < 3; i++) {
+    read_count(r, what);
   }
-  for (size_t b = 0; b < head[0]; b++) {
-    size_t dimension, parametric, count, first = r->nodes.count;
-    long long tag;
-    struct raw_node *node;
-    DEA_TRY(r->ctx, read_count(r, "a dimension", &dimension));
-    DEA_TRY(r->ctx, read_int(r, "the number of an entity", &tag));
-    DEA_TRY(r->ctx, read_count(r, "0 or 1", &parametric));
-    DEA_TRY(r->ctx, read_count(r, "a number of nodes", &count));
-    for (size_t i = 0; i < count; i++) {
-      DEA_TRY(r->ctx, read_int(r, "the number of a node", &tag));
-      DEA_TRY(r->ctx, add_node(r, tag, &node));
+  return blocks;
+}
+
+static void read_nodes_4(struct reader *r)
+{
+  const size_t blocks = read_head(r, "a number of nodes");
+  for (size_t b = 0; b < blocks && r->status == DEA_OK; b++) {
+    const size_t dimension = read_count(r, "a dimension"), first = r->nodes.count;
+    read_int(r, "the number of an entity");
+    const bool parametric = read_count(r, "0 or 1") != 0;
+    const size_t count = read_count(r, "a number of nodes");
+    for (size_t i = 0; i < count && r->status == DEA_OK; i++) {
+      struct raw_node *node = list_add(r, &r->nodes, sizeof *node);
+      node->tag = read_int(r, "the number of a node");
     }
-    for (size_t i = 0; i < count; i++) {
-      DEA_TRY(r->ctx, read_place(r, (struct raw_node *)r->nodes.data + first + i));
-      DEA_TRY(r->ctx, skip_numbers(r, parametric != 0 && dimension < 3 ? dimension : 0));
+    for (size_t i = 0; i < count && r->status == DEA_OK; i++) {
+      read_place(r, (struct raw_node *)r->nodes.data + first + i);
+      skip_numbers(r, parametric && dimension < 3 ? dimension : 0);
     }
   }
-  return DEA_OK;
 }
 
-static dea_status find_kind(struct reader *r, long long type, const struct kind **out)
+static const struct kind *read_kind(struct reader *r)
 {
-  *out = NULL;
+  const long long type = read_int(r, "a type of elements");
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
     if (kinds[i].type == type) {
-      *out = &kinds[i];
-      return DEA_OK;
+      return &kinds[i];
     }
   }
-  return fault(r, r->line,
-               "elements of Gmsh's type %lld cannot be used: a plane mesh of quadrilaterals of "
-               "first or second order is wanted (types 3, 10, 16)",
-               type);
+  fault(r, r->line,
+        "elements of Gmsh's type %lld cannot be used: a plane mesh of quadrilaterals of "
+        "first or second order is wanted (types 3, 10, 16)",
+        type);
+  return kinds;
 }
 
-static dea_status read_element(struct reader *r, const struct kind *kind, long long group)
+static void read_element(struct reader *r, const struct kind *kind, long long group)
 {
-  struct raw_element *element = list_add(r->ctx, &r->elements, sizeof *element);
-  DEA_TRY_MEMORY(element != NULL);
+  struct raw_element *element = list_add(r, &r->elements, sizeof *element);
   *element = (struct raw_element){.kind = kind, .group = group, .line = r->line};
   for (int n = 0; n < kind->nodes; n++) {
-    DEA_TRY(r->ctx, read_int(r, "the number of a node", &element->nodes[n]));
+    element->nodes[n] = read_int(r, "the number of a node");
   }
-  return DEA_OK;
 }
 
-static dea_status read_elements_2(struct reader *r)
+static void read_elements_2(struct reader *r)
 {
-  size_t count;
-  DEA_TRY(r->ctx, read_count(r, "a number of elements", &count));
-  for (size_t i = 0; i < count; i++) {
-    long long tag, type, group = 0;
-    size_t tags;
-    const struct kind *kind;
-    DEA_TRY(r->ctx, read_int(r, "the number of an element", &tag));
-    DEA_TRY(r->ctx, read_int(r, "a type of elements", &type));
-    DEA_TRY(r->ctx, find_kind(r, type, &kind));
-    DEA_TRY(r->ctx, read_count(r, "a number of tags", &tags));
-    for (size_t k = 0; k < tags; k++) {
-      DEA_TRY(r->ctx, read_int(r, "a tag", &tag));
+  const size_t count = read_count(r, "a number of elements");
+  for (size_t i = 0; i < count && r->status == DEA_OK; i++) {
+    long long group = 0;
+    read_int(r, "the number of an element");
+    const struct kind *kind = read_kind(r);
+    const size_t tags = read_count(r, "a number of tags");
+    for (size_t k = 0; k < tags && r->status == DEA_OK; k++) {
+      const long long tag = read_int(r, "a tag");
       group = k == 0 ? llabs(tag) : group;
     }
-    DEA_TRY(r->ctx, read_element(r, kind, group));
+    read_element(r, kind, group);
   }
-  return DEA_OK;
 }
 
-static dea_status read_elements_4(struct reader *r)
+static void read_elements_4(struct reader *r)
 {
-  size_t head[4]; // blocks, elements, least and largest number
-  for (int i = 0; i < 4; i++) {
-    DEA_TRY(r->ctx, read_count(r, "a number of elements", &head[i]));
-  }
-  for (size_t b = 0; b < head[0]; b++) {
-    size_t dimension, count;
-    long long entity, type, tag;
-    const struct kind *kind;
-    DEA_TRY(r->ctx, read_count(r, "a dimension", &dimension));
-    DEA_TRY(r->ctx, read_int(r, "the number of an entity", &entity));
-    DEA_TRY(r->ctx, read_int(r, "a type of elements", &type));
-    DEA_TRY(r->ctx, find_kind(r, type, &kind));
-    DEA_TRY(r->ctx, read_count(r, "a number of elements", &count));
-    for (size_t i = 0; i < count; i++) {
-      DEA_TRY(r->ctx, read_int(r, "the number of an element", &tag));
-      DEA_TRY(r->ctx, read_element(r, kind, entity));
+  const size_t blocks = read_head(r, "a number of elements");
+  for (size_t b = 0; b < blocks && r->status == DEA_OK; b++) {
+    read_count(r, "a dimension");
+    const long long entity = read_int(r, "the number of an entity");
+    const struct kind *kind = read_kind(r);
+    const size_t count = read_count(r, "a number of elements");
+    for (size_t i = 0; i < count && r->status == DEA_OK; i++) {
+      read_int(r, "the number of an element");
+      read_element(r, kind, entity);
     }
   }
-  return DEA_OK;
 }
 
 /* Goes on behind the end of a section; rest: over what is left of it. */
-static dea_status end_section(struct reader *r, const char *name, size_t length, bool rest)
+static void end_section(struct reader *r, const char *name, size_t length, bool rest)
 {
-  for (;;) {
+  while (r->status == DEA_OK) {
     skip_space(r);
     size_t n = word_length(r->at);
-    if (n == length + 3 && strncmp(r->at, "$End", 4) == 0 &&
-        strncmp(r->at + 4, name + 1, length - 1) == 0) {
-      r->at += n;
-      return DEA_OK;
-    }
-    if (!rest || n == 0) {
-      return not_that(r, "its end");
+    bool end = n > 4 && n == length + 3 && strncmp(r->at, "$End", 4) == 0 &&
+               strncmp(r->at + 4, name + 1, n - 4) == 0;
+    if (!end && (!rest || n == 0)) {
+      not_that(r, "its end");
     }
     r->at += n;
+    if (end) {
+      return;
+    }
   }
 }
 
-static dea_status read_sections(struct reader *r)
+static void read_sections(struct reader *r)
 {
   static const struct {
     const char *name;
-    dea_status (*read[2])(struct reader *r); // of 2.2, 4.1
+    void (*read[2])(struct reader *r); // of 2.2, 4.1
   } sections[] = {
       {"$MeshFormat", {read_format, read_format}},
       {"$PhysicalNames", {read_physical_names, read_physical_names}},
@@ -446,7 +407,7 @@ static dea_status read_sections(struct reader *r)
       {"$Elements", {read_elements_2, read_elements_4}},
   };
   enum { KNOWN = sizeof sections / sizeof sections[0] };
-  for (skip_space(r); *r->at != '\0'; skip_space(r)) {
+  for (skip_space(r); *r->at != '\0' && r->status == DEA_OK; skip_space(r)) {
     const char *name = r->at;
     size_t length = word_length(name), k = 0;
     while (k < KNOWN &&
@@ -454,17 +415,19 @@ static dea_status read_sections(struct reader *r)
       k++;
     }
     if (name[0] != '$' || (r->version == 0 && k != 0)) {
-      return fault(r, r->line,
-                   "this is no .msh file: it begins with $MeshFormat, and has sections "
-                   "such as $Nodes and $Elements");
+      fault(r, r->line,
+            "this is no .msh file: it begins with $MeshFormat, and has sections "
+            "such as $Nodes and $Elements");
+      return;
     }
-    dea_status (*read)(struct reader *) = k < KNOWN ? sections[k].read[r->version == 4] : NULL;
+    void (*read)(struct reader *) = k < KNOWN ? sections[k].read[r->version == 4] : NULL;
     r->section = k < KNOWN ? sections[k].name : "a section";
     r->at += length;
-    DEA_TRY(r->ctx, read != NULL ? read(r) : DEA_OK);
-    DEA_TRY(r->ctx, end_section(r, name, length, read == NULL));
+    if (read != NULL) {
+      read(r);
+    }
+    end_section(r, name, length, read == NULL);
   }
-  return DEA_OK;
 }
 
 // From what was read to a mesh --------------------------------------------------------------------
@@ -541,7 +504,7 @@ static uint64_t along_hilbert(double u, double v)
 struct survey {
   double low[3], high[3], size;
   int order;
-  size_t quads, lines, triangles, ungrouped;
+  size_t quads, lines, edges, triangles, ungrouped; // edges: at most
   const struct raw_element *first_triangle, *first_ungrouped;
 };
 
@@ -590,8 +553,11 @@ static dea_status check_element(struct reader *r, const struct raw_element *e, s
     if (next_group(r, e, &cursor) == 0) {
       s->first_ungrouped = s->ungrouped++ == 0 ? e : s->first_ungrouped;
     }
-  } else {
-    s->lines += e->kind->dimension == 1;
+  } else if (e->kind->dimension == 1) {
+    s->lines++;
+    for (size_t cursor = 0; next_group(r, e, &cursor) != 0;) {
+      s->edges++;
+    }
   }
   return DEA_OK;
 }
@@ -666,10 +632,10 @@ static dea_status add_names(struct reader *r, struct dea_plane_mesh *mesh)
   for (size_t i = 0; i < r->elements.count; i++) {
     const struct raw_element *e = &elements[i];
     size_t cursor = 0;
-    struct physical *unused;
     for (long long tag; (tag = next_group(r, e, &cursor)) != 0;) {
       if (find_physical(r, e->kind->dimension, tag) == NULL) {
-        DEA_TRY(r->ctx, add_physical(r, e->kind->dimension, tag, &unused));
+        add_physical(r, e->kind->dimension, tag);
+        DEA_TRY(r->ctx, r->status);
       }
     }
   }
@@ -755,58 +721,29 @@ static dea_status add_quad(struct reader *r, size_t i, double unit_m, struct dea
 
 /* A line element, once for each curve that it is on. */
 static dea_status add_line(struct reader *r, const struct raw_element *e, double unit_m,
-                           struct dea_places *places, struct dea_plane_mesh *mesh,
-                           struct list *curves)
+                           struct dea_places *places, struct dea_plane_mesh *mesh)
 {
-  int nodes[3], per = mesh->order + 1;
-  size_t cursor = 0, known = places->count, first = curves->count;
+  size_t per = (size_t)mesh->order + 1, cursor = 0, first = mesh->edge_count;
   for (long long tag; (tag = next_group(r, e, &cursor)) != 0;) {
+    size_t known = places->count, twin = first;
+    int *edge = mesh->edges + mesh->edge_count * per;
+    int index = (int)find_physical(r, 1, tag)->index;
     if (e->kind->order != mesh->order) {
       return fault(r, e->line, "a line of another order than the quadrilaterals");
     }
-    for (int n = 0; n < per; n++) {
-      nodes[n] = mesh_node(r, e->nodes[n], unit_m, places);
+    for (size_t n = 0; n < per; n++) { // both ends, then the middle
+      edge[n == 0 ? 0 : n == 1 ? per - 1 : 1] = mesh_node(r, e->nodes[n], unit_m, places);
       if (places->count > known) {
         return fault(r, e->line, "a line of a physical curve is not on the side of an element");
       }
     }
-    int index = (int)find_physical(r, 1, tag)->index;
-    size_t known_edge = first;
-    while (known_edge < curves->count &&
-           ((int *)curves->data)[known_edge * (size_t)(per + 1)] != index) {
-      known_edge++;
+    while (twin < mesh->edge_count && mesh->edge_curve[twin] != index) {
+      twin++;
     }
-    if (known_edge < curves->count) {
-      continue; // two numbers of one name
-    }
-    int *edge = list_add(r->ctx, curves, (size_t)(per + 1) * sizeof *edge);
-    DEA_TRY_MEMORY(edge != NULL);
-    edge[0] = index;
-    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): per is 2 or 3
-    edge[1] = nodes[0];
-    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): the same
-    edge[per] = nodes[1];
-    if (per == 3) {
-      edge[2] = nodes[2];
+    if (twin == mesh->edge_count) { // otherwise two numbers of one name
+      mesh->edge_curve[mesh->edge_count++] = index;
     }
   }
-  return DEA_OK;
-}
-
-/* The edges out of their list. */
-static dea_status read_edges(struct reader *r, const struct list *curves,
-                             struct dea_plane_mesh *mesh)
-{
-  size_t per = (size_t)(mesh->order + 1);
-  const int *from = curves->data;
-  mesh->edges = dea_alloc(r->ctx, curves->count * per, sizeof *mesh->edges);
-  mesh->edge_curve = dea_alloc(r->ctx, curves->count, sizeof *mesh->edge_curve);
-  DEA_TRY_MEMORY(mesh->edges != NULL && mesh->edge_curve != NULL);
-  for (size_t i = 0; i < curves->count; i++, from += per + 1) {
-    mesh->edge_curve[i] = from[0];
-    memcpy(mesh->edges + i * per, from + 1, per * sizeof *from);
-  }
-  mesh->edge_count = curves->count;
   return DEA_OK;
 }
 
@@ -814,19 +751,19 @@ static dea_status fill(struct reader *r, const struct survey *s, double unit_m,
                        struct dea_places *places, struct dea_plane_mesh *mesh)
 {
   const struct raw_element *elements = r->elements.data;
-  struct list curves = {0};
   DEA_TRY(r->ctx, add_names(r, mesh));
   unsigned char *within = dea_alloc(r->ctx, mesh->group_count, 1);
-  dea_status status = within != NULL ? DEA_OK : DEA_E_MEMORY;
+  mesh->edges = dea_alloc(r->ctx, s->edges * (size_t)(s->order + 1), sizeof *mesh->edges);
+  mesh->edge_curve = dea_alloc(r->ctx, s->edges, sizeof *mesh->edge_curve);
+  bool enough = within != NULL && mesh->edges != NULL && mesh->edge_curve != NULL;
+  dea_status status = enough ? DEA_OK : DEA_E_MEMORY;
   for (size_t i = 0; i < s->quads && status == DEA_OK;) {
     status = add_quad(r, i, unit_m, places, mesh, within, &i);
   }
   mesh->node_count = places->count;
   for (size_t i = s->quads; i < s->quads + s->lines && status == DEA_OK; i++) {
-    status = add_line(r, &elements[i], unit_m, places, mesh, &curves);
+    status = add_line(r, &elements[i], unit_m, places, mesh);
   }
-  status = status == DEA_OK ? read_edges(r, &curves, mesh) : status;
-  dea_free(r->ctx, curves.data);
   dea_free(r->ctx, within);
   return status;
 }
@@ -875,8 +812,8 @@ dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *
     return DEA_E_MEMORY;
   }
   void *locale = dea_c_locale_enter();
-  dea_status status = read_sections(&r);
-  status = status == DEA_OK ? build(&r, unit_m, out) : status;
+  read_sections(&r);
+  dea_status status = r.status == DEA_OK ? build(&r, unit_m, out) : r.status;
   dea_c_locale_leave(locale);
   if (status != DEA_OK) {
     dea_plane_mesh_destroy(ctx, *out);

@@ -1,7 +1,65 @@
-#include "model/solid/model3d/adapt.h"
+/* Estimated errors of the model "3d", and a model whose mesh is made by them (docs/theory/trust.md,
+ * "Adaptive refinement"). */
+#include "model/make.h"
+#include "model/solid/model3d/solid_fields.h"
+#include "model/solid/model3d/solid_model.h"
 
 #include <math.h>
 #include <string.h>
+
+// Estimated errors -------------------------------------------------------------------------------
+
+/* Whether the mesh is all that a point's error is of; a membrane has one too. */
+static bool has_error(const struct dea_load_point *point)
+{
+  struct dea_load_point solid = *point;
+  solid.own_flags &= ~(1u << DEA_FLAG_PREVIEW);
+  return dea_load_point_trusted(&solid);
+}
+
+/* Of the main motion of a monitor at a point without a doubt; otherwise, and of a body that is held
+ * along it, NAN. part: of each element, may be NULL. */
+static dea_status find_error(struct dea_context *ctx, struct dea_model *model, size_t monitor,
+                             const double *values, double *weight, double *error, double *part)
+{
+  const struct dea_layout_monitor *m = &model->layout->monitors[monitor];
+  enum dea_observed motion = dea_observed_main(values);
+  *error = NAN;
+  if (m->kind == DEA_MONITOR_BODY) {
+    size_t node = model->bodies[m->body].node;
+    if ((model->solid->problem.held[3 * node + (size_t)motion]) != 0) {
+      return DEA_OK;
+    }
+  }
+  dea_observer_gradient(model->observer, model->solid, monitor, motion, weight);
+  struct dea_solid_quantity one = {.weight = weight};
+  one.probe_count = dea_observer_probes(model->observer, model->solid, monitor, motion, one.probes);
+  dea_status status = dea_solid_errors(ctx, model->solid, &one, 1, error, part);
+  return status == DEA_E_DOMAIN ? DEA_OK : status; // at the end of a law none is known
+}
+
+dea_status dea_solid_model_errors(struct dea_context *ctx, struct dea_model *model, double *error)
+{
+  struct dea_load_point point;
+  struct dea_observation seen;
+  DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, &point));
+  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
+  for (size_t i = 0; i < seen.monitor_count; i++) {
+    error[i] = NAN;
+  }
+  if (!has_error(&point)) {
+    return DEA_OK;
+  }
+  double *weight = dea_solid_alloc(ctx, 3 * model->mesh.grid->node_count, sizeof *weight);
+  dea_status status = weight == NULL ? DEA_E_MEMORY : DEA_OK;
+  for (size_t i = 0; i < seen.monitor_count && status == DEA_OK; i++) {
+    status = find_error(ctx, model, i, seen.monitor[i], weight, &error[i], NULL);
+  }
+  dea_free(ctx, weight);
+  return status;
+}
+
+// Sizes ------------------------------------------------------------------------------------------
 
 /* Of the ratio of sizes between one mesh and the next: estimates do not see further. */
 static const double finest = 0.35, coarsest = 1.4;
@@ -59,8 +117,10 @@ static dea_status gather(struct dea_context *ctx, const struct dea_layout_mesh *
   return DEA_OK;
 }
 
-dea_status dea_adapt_sizes(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                           const double *part, double wanted, double (*at)[3])
+/* Sizes of the next mesh. part: [element_count], as dea_recover_errors; wanted: error that it
+ * should have, > 0. at: [quad_count of the plane mesh] x, y, size [m]. */
+static dea_status find_sizes(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                             const double *part, double wanted, double (*at)[3])
 {
   size_t count = mesh->plane->quad_count;
   double *sum = dea_alloc(ctx, count, sizeof *sum), roots = 0;
@@ -75,4 +135,148 @@ dea_status dea_adapt_sizes(struct dea_context *ctx, const struct dea_layout_mesh
   }
   dea_free(ctx, sum);
   return status;
+}
+
+// Adaptive refinement ----------------------------------------------------------------------------
+
+/* One mesh after the other, each finer where the error of the last one came from. */
+struct adaptation {
+  const struct dea_device *device;
+  struct dea_model_settings settings; // with the sizes of the present mesh
+  size_t monitor;                     // of the layout
+  struct dea_adapt_pass *pass;        // [settings.adapt.passes], owned
+  size_t count;
+  double (*now)[3], (*next)[3]; // sizes of this mesh and the next one, owned
+  size_t next_count;
+};
+
+static dea_status build(struct dea_context *ctx, const struct dea_device *device,
+                        const struct dea_model_settings *settings, struct dea_model **out)
+{
+  return DEA_CHAIN(ctx, dea_model_build(ctx, sizeof **out, device, settings,
+                                        dea_solid_model_prepare, dea_solid_model_destroy, out));
+}
+
+/* The error on a mesh at the voltage, and the sizes of the next one. */
+static dea_status estimate_mesh_error(struct dea_context *ctx, struct adaptation *a,
+                                      struct dea_model *model, struct dea_adapt_pass *pass)
+{
+  struct dea_load_point point;
+  struct dea_observation seen;
+  const struct dea_grid *grid = model->mesh.grid;
+  DEA_TRY(ctx, dea_solid_model_solve(ctx, model, a->settings.adapt.voltage_V, &point));
+  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
+  const double *values = seen.monitor[a->monitor];
+  enum dea_observed motion = dea_observed_main(values);
+  bool ratio = motion == DEA_OBSERVED_STRETCH || motion == DEA_OBSERVED_AREA_STRETCH;
+  *pass = (struct dea_adapt_pass){.elements = grid->element_count,
+                                  .unknowns = 3 * grid->node_count,
+                                  .value = values[motion],
+                                  .error = NAN};
+  double *weight = dea_alloc(ctx, 3 * grid->node_count, sizeof *weight);
+  double *part = dea_alloc(ctx, grid->element_count, sizeof *part);
+  double(*at)[3] = dea_resize(ctx, a->next, model->mesh.plane->quad_count, sizeof *at);
+  a->next = at != NULL ? at : a->next;
+  dea_status status =
+      dea_solid_allreduce_any(weight == NULL || part == NULL || at == NULL) ? DEA_E_MEMORY : DEA_OK;
+  if (status == DEA_OK && has_error(&point)) {
+    status = find_error(ctx, model, a->monitor, values, weight, &pass->error, part);
+  }
+  double wanted = a->settings.adapt.tolerance * fabs(pass->value - (ratio ? 1 : 0));
+  if (status == DEA_OK && wanted > 0 && !isnan(pass->error)) {
+    pass->within = pass->error <= wanted;
+    a->next_count = model->mesh.plane->quad_count;
+    status = find_sizes(ctx, &model->mesh, part, wanted, a->next);
+  } else if (status == DEA_OK) {
+    pass->error = NAN; // of what does not move, too
+  }
+  dea_free(ctx, part);
+  dea_free(ctx, weight);
+  return status;
+}
+
+static dea_status find_monitor(struct dea_context *ctx, struct adaptation *a)
+{
+  const struct dea_layout *l = a->device->layout;
+  const char *name = a->settings.adapt.monitor;
+  while (a->monitor < l->monitor_count && strcmp(l->monitors[a->monitor].name, name) != 0) {
+    a->monitor++;
+  }
+  return a->monitor < l->monitor_count
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DESIGN, "compute.solid.adapt: there is no monitor '%s'", name);
+}
+
+/* Where the error of a mesh is not known the last one is as good as any. */
+static dea_status report_end(struct dea_context *ctx, const struct adaptation *a)
+{
+  const struct dea_adapt_pass *last = &a->pass[a->count - 1];
+  if (!isnan(last->error) && last->within) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                         isnan(last->error)
+                             ? "model 3d: no error of the monitor '%s' is known at %.4g kV: its "
+                               "mesh stays as it is"
+                             : "model 3d: the error of the monitor '%s' at %.4g kV is not yet that "
+                               "of compute.solid.adapt.tolerance (compute.solid.adapt.passes)",
+                         a->settings.adapt.monitor, 1e-3 * a->settings.adapt.voltage_V);
+}
+
+/* Another model, on a mesh of the present sizes, in the place of *model. */
+static dea_status build_anew(struct dea_context *ctx, const struct adaptation *a,
+                             struct dea_model **model)
+{
+  dea_solid_model_destroy(ctx, *model);
+  *model = NULL;
+  return DEA_CHAIN(ctx, build(ctx, a->device, &a->settings, model));
+}
+
+/* To the mesh that is exact enough; *model: on it, at rest. */
+static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct dea_model **model)
+{
+  size_t most = (size_t)a->settings.adapt.passes;
+  a->pass = dea_solid_alloc(ctx, most, sizeof *a->pass);
+  DEA_TRY_MEMORY(a->pass != NULL);
+  for (bool on = true; on;) {
+    struct dea_adapt_pass *pass = &a->pass[a->count];
+    DEA_TRY(ctx, estimate_mesh_error(ctx, a, *model, pass));
+    a->count++;
+    on = a->count < most && !pass->within && !isnan(pass->error);
+    if (on) {
+      double(*sizes)[3] = a->now;
+      a->now = a->next;
+      a->next = sizes;
+      a->settings.sizes = (const double(*)[3])a->now;
+      a->settings.size_count = a->next_count;
+    }
+    DEA_TRY(ctx, build_anew(ctx, a, model)); // the last one too: to be at rest
+  }
+  return DEA_CHAIN(ctx, report_end(ctx, a));
+}
+
+dea_status dea_solid_model_create(struct dea_context *ctx, const struct dea_device *device,
+                                  const struct dea_model_settings *settings, struct dea_model **out)
+{
+  static const struct dea_model_settings usual = {0};
+  struct adaptation a = {.device = device, .settings = settings != NULL ? *settings : usual};
+  bool asked = a.settings.adapt.monitor != NULL;
+  *out = NULL;
+  dea_status status = asked ? find_monitor(ctx, &a) : DEA_OK;
+  status = status == DEA_OK ? build(ctx, device, &a.settings, out) : status;
+  if (asked && status == DEA_OK) {
+    status = adapt(ctx, &a, out);
+  }
+  if (status == DEA_OK) {
+    (*out)->passes = a.pass;
+    (*out)->pass_count = a.count;
+    a.pass = NULL;
+  } else if (*out != NULL) {
+    dea_solid_model_destroy(ctx, *out);
+    *out = NULL;
+  }
+  dea_free(ctx, a.pass);
+  dea_free(ctx, a.now);
+  dea_free(ctx, a.next);
+  return DEA_CHAIN(ctx, status);
 }

@@ -1,11 +1,16 @@
-#include "model/solid/model3d/circuit_step.h"
-
+/* A solid between electrodes in time: its steps together with those of the supply's circuit
+ * (docs/theory/time.md). The voltage of a step is that of the circuit for the capacitance which the
+ * film then has. Where channels have sources of their own all sources are ideal, and their voltages
+ * those of the step. */
 #include "base/arena.h"
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/charge_control.h"
 #include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/newton.h"
+#include "model/solid/model3d/sheet.h"
+#include "model/solid/model3d/solid_model.h"
+#include "model/solid/motion/time.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,12 +35,13 @@ struct network {
 
 struct dea_circuit_step {
   struct dea_arena memory;              // of the next four lines
-  struct network network, network_next; // of driven.channels
+  struct network network, network_next; // of has_network
   double *own_V, *own_start_V;          // [channels] beside their shares
   double *current_A;                    // [channels] of the last step, with all copies
   bool *own_source;                     // [channels] of options
   bool own;                             // any channel has a voltage of its own
-  struct dea_driven_solid driven;
+  const struct dea_model *model;
+  bool has_network;        // channels have currents, which are found; else the supply is on the one
   struct dea_sheet *sheet; // NULL: all electrodes are at the voltage of their channel
   struct dea_solid_time *time;
   struct dea_time_options options;
@@ -59,33 +65,26 @@ static double largest_motion(const struct dea_circuit_step *d)
 static dea_status find_film(struct dea_context *ctx, const struct dea_circuit_step *d,
                             struct dea_circuit_film *out)
 {
-  double capacitance_F = 0, conductance_S = 0, copies = d->driven.copies;
-  DEA_TRY(ctx, dea_solid_capacitance(ctx, d->driven.solid, &capacitance_F));
+  double capacitance_F = 0, conductance_S = 0, copies = d->model->copies;
+  DEA_TRY(ctx, dea_solid_capacitance(ctx, d->model->solid, &capacitance_F));
   *out = (struct dea_circuit_film){.capacitance_F = copies * capacitance_F};
   if (d->leaks_evenly) {
     out->conductance_S = d->leakage_per_s * out->capacitance_F;
     return DEA_OK;
   }
-  DEA_TRY(ctx,
-          dea_solid_conductance(ctx, d->driven.solid, d->driven.leakage_per_s, &conductance_S));
+  DEA_TRY(ctx, dea_solid_conductance(ctx, d->model->solid, d->model->plies.leakage_per_s,
+                                     &conductance_S));
   out->conductance_S = copies * conductance_S;
   return DEA_OK;
 }
 
-double dea_leakage_per_s(const struct dea_material *material,
-                         const struct dea_part_material *part_material)
-{
-  double rho = material->resistivity_ohm_m;
-  return rho > 0 ? 1 / (rho * part_material->permittivity_F_per_m) : 0; // as it is pre-stretched
-}
-
 static void find_leakage(struct dea_circuit_step *d)
 {
-  const struct dea_solid_problem *p = &d->driven.solid->problem;
+  const struct dea_solid_problem *p = &d->model->solid->problem;
   bool any = false;
   d->leaks_evenly = true;
   for (size_t i = 0; i < p->part_material_count; i++) {
-    double per_s = d->driven.leakage_per_s[i];
+    double per_s = d->model->plies.leakage_per_s[i];
     if (p->part_materials[i].permittivity_F_per_m > 0) {
       d->leaks_evenly = d->leaks_evenly && (!any || per_s == d->leakage_per_s);
       d->leakage_per_s = per_s;
@@ -98,7 +97,7 @@ static void find_leakage(struct dea_circuit_step *d)
 
 static size_t channel_count(const struct dea_circuit_step *d)
 {
-  return dea_solid_channel_count(d->driven.solid) + 1;
+  return dea_solid_channel_count(d->model->solid) + 1;
 }
 
 static bool any_of(const bool *flags, size_t count)
@@ -130,8 +129,9 @@ static dea_status allocate_network(struct dea_circuit_step *d)
 static dea_status find_network(struct dea_context *ctx, struct dea_circuit_step *d,
                                struct network *out)
 {
-  dea_solid_channel_voltages(d->driven.solid, out->voltage_V);
-  return dea_solid_flows(ctx, d->driven.solid, d->driven.leakage_per_s, out->charge_C, out->leak_A);
+  dea_solid_channel_voltages(d->model->solid, out->voltage_V);
+  return dea_solid_flows(ctx, d->model->solid, d->model->plies.leakage_per_s, out->charge_C,
+                         out->leak_A);
 }
 
 /* Charge that leaves a channel through the films in a step between the two networks. */
@@ -150,14 +150,14 @@ static double given_C(const struct dea_circuit_step *d, size_t channel)
 static void find_currents(struct dea_circuit_step *d)
 {
   for (size_t k = 0; k < channel_count(d); k++) {
-    d->current_A[k] = d->step_s > 0 ? d->driven.copies * given_C(d, k) / d->step_s : 0;
+    d->current_A[k] = d->step_s > 0 ? d->model->copies * given_C(d, k) / d->step_s : 0;
   }
 }
 
 /* Of the supply that channels without a source of their own share. */
 static double supply_share(const struct dea_circuit_step *d, size_t channel)
 {
-  return d->own_source[channel] ? 0 : d->driven.solid->problem.share[channel];
+  return d->own_source[channel] ? 0 : d->model->solid->problem.share[channel];
 }
 
 static double supply_charge_C(const struct dea_circuit_step *d, const struct network *at)
@@ -166,7 +166,7 @@ static double supply_charge_C(const struct dea_circuit_step *d, const struct net
   for (size_t k = 0; k < channel_count(d); k++) {
     sum += supply_share(d, k) * at->charge_C[k];
   }
-  return d->driven.copies * sum;
+  return d->model->copies * sum;
 }
 
 /* The step's account with an ideal source on each channel; charge and current of the state are
@@ -178,7 +178,7 @@ static void advance_network(struct dea_circuit_step *d, const struct dea_time_st
   const struct network *from = &d->network, *to = &d->network_next;
   struct dea_circuit_state *next = &d->circuit_next;
   const size_t count = channel_count(d);
-  double copies = d->driven.copies, h = step->length_s, given_J = 0, leaked_J = 0;
+  double copies = d->model->copies, h = step->length_s, given_J = 0, leaked_J = 0;
   *next = d->circuit;
   next->source_voltage_V = next->voltage_V = step->source_voltage_V;
   next->charge_C = supply_charge_C(d, to);
@@ -202,7 +202,7 @@ static void advance_network(struct dea_circuit_step *d, const struct dea_time_st
 static void drive_channels(struct dea_circuit_step *d, const struct dea_time_step *step)
 {
   for (size_t k = 1; d->own && k < channel_count(d); k++) {
-    double share_V = d->driven.solid->problem.share[k] * step->source_voltage_V;
+    double share_V = d->model->solid->problem.share[k] * step->source_voltage_V;
     d->own_V[k] = d->own_source[k] ? step->own_V[k] - share_V : d->own_start_V[k];
   }
   if (d->own) {
@@ -214,18 +214,19 @@ static void drive_channels(struct dea_circuit_step *d, const struct dea_time_ste
 
 static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
 {
-  struct dea_solid *solid = d->driven.solid;
+  struct dea_solid *solid = d->model->solid;
   double voltage_V = dea_solid_voltage(solid);
   size_t count = channel_count(d);
   bool own_sources = any_of(d->options.own_sources, count);
-  DEA_TRY(ctx, dea_sheet_create(ctx, d->driven.mesh, solid, d->driven.leakage_per_s, &d->sheet));
+  DEA_TRY(ctx,
+          dea_sheet_create(ctx, &d->model->mesh, solid, d->model->plies.leakage_per_s, &d->sheet));
   d->own = own_sources || dea_solid_has_own_voltages(solid) || d->sheet != NULL;
-  const struct dea_solid_time_options options = {.branches = d->driven.branches,
+  const struct dea_solid_time_options options = {.branches = d->model->plies.branches,
                                                  .inertia = d->options.inertia,
                                                  .spectral_radius = d->options.rho_inf,
                                                  .own_voltages = d->own};
   struct dea_circuit_film film = {.capacitance_F = 0};
-  if (d->own && (!dea_circuit_is_ideal(&d->options.circuit) || !d->driven.channels)) {
+  if (d->own && (!dea_circuit_is_ideal(&d->options.circuit) || !d->has_network)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "%s ideal sources: no series resistance and no limit of the current is known "
                     "of them",
@@ -234,7 +235,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
   }
   find_leakage(d);
   DEA_TRY(ctx, dea_solid_time_create(ctx, solid, &options, &d->time));
-  if (d->driven.channels) {
+  if (d->has_network) {
     DEA_TRY(ctx, dea_solid_allreduce(ctx, allocate_network(d)));
     memcpy(d->own_start_V, solid->state.own_V, count * sizeof *d->own_V);
     if (own_sources) {
@@ -254,14 +255,14 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
     d->circuit.current_A = 0; // a mean of no step
   }
   d->circuit_next = d->circuit;
-  d->charged_J = d->own ? d->driven.copies * dea_solid_time_charged_J(d->time, false)
+  d->charged_J = d->own ? d->model->copies * dea_solid_time_charged_J(d->time, false)
                         : d->circuit.charge_C * voltage_V;
-  d->largest_m = smallest_motion * d->driven.thickness_m;
+  d->largest_m = smallest_motion * d->model->layout->plies[d->model->plies.film].thickness_m;
   d->largest_V = fabs(voltage_V);
   return DEA_OK;
 }
 
-dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_driven_solid *driven,
+dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_model *model,
                                    const struct dea_time_options *time,
                                    struct dea_circuit_step **out)
 {
@@ -269,7 +270,8 @@ dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_dri
   *out = NULL;
   DEA_TRY_MEMORY(d != NULL);
   d->memory.ctx = ctx;
-  d->driven = *driven;
+  d->model = model;
+  d->has_network = !model->disc || dea_layout_has_sheet_resistance(model->layout);
   d->options = *time;
   DEA_TRY_ELSE(ctx, prepare(ctx, d), dea_circuit_step_destroy(ctx, d));
   *out = d;
@@ -298,11 +300,11 @@ static dea_status try_step(struct dea_context *ctx, struct dea_circuit_step *d, 
 /* Once the supply is disconnected. */
 static dea_status prepare_charge(struct dea_context *ctx, struct dea_circuit_step *d)
 {
-  if (d->no_charge || d->driven.solid->problem.charge != NULL) {
+  if (d->no_charge || d->model->solid->problem.charge != NULL) {
     return DEA_OK;
   }
   dea_solid_time_reject(d->time); // it is of a solid with a load less
-  const dea_status status = dea_charge_create(ctx, d->driven.solid);
+  const dea_status status = dea_charge_create(ctx, d->model->solid);
   d->no_charge = status == DEA_E_UNSUPPORTED;
   if (d->no_charge) {
     dea_context_clear(ctx);
@@ -326,11 +328,11 @@ static dea_status find_step(struct dea_context *ctx, struct dea_circuit_step *d,
   for (int i = 0; i < VOLTAGES_MAX; i++) {
     if (step->disconnected && !d->no_charge) {
       DEA_TRY(ctx,
-              dea_charge_hold(ctx, d->driven.solid, 0, film->capacitance_F * V / d->driven.copies));
+              dea_charge_hold(ctx, d->model->solid, 0, film->capacitance_F * V / d->model->copies));
     }
     const dea_status status = i > 0 ? dea_solid_time_again(ctx, d->time, V, report)
                                     : try_step(ctx, d, V, step->length_s, report);
-    dea_charge_release(d->driven.solid);
+    dea_charge_release(d->model->solid);
     DEA_TRY(ctx, status);
     DEA_TRY(ctx, find_film(ctx, d, film));
     double off = dea_circuit_voltage(circuit, &d->circuit, step, film, &slope) - V;
@@ -401,7 +403,7 @@ static double unaccounted(const struct dea_circuit_step *d, const struct dea_sol
   double film = to->stored + to->branches + to->kinetic + to->dissipated + to->damped -
                 (from->stored + from->branches + from->kinetic + from->dissipated + from->damped);
   return b->supply_work_J - a->supply_work_J -
-         d->driven.copies * (film - to->motion + from->motion) -
+         d->model->copies * (film - to->motion + from->motion) -
          (b->resistance_loss_J - a->resistance_loss_J) - (b->leakage_loss_J - a->leakage_loss_J);
 }
 
@@ -418,7 +420,7 @@ static bool has_jumped(const struct dea_circuit_step *d, double lost_J,
 /* Largest work of the supply or of what moves supports and bodies so far. */
 static double largest_work(const struct dea_circuit_step *d)
 {
-  double motion_J = d->driven.copies * dea_solid_time_energies(d->time, true).motion;
+  double motion_J = d->model->copies * dea_solid_time_energies(d->time, true).motion;
   return fmax(d->largest_J, fmax(fabs(d->circuit_next.supply_work_J), fabs(motion_J)));
 }
 
@@ -437,7 +439,7 @@ static double find_error(struct dea_circuit_step *d, double error_m, double lost
   d->lost_next_J = d->lost_J;
   if (has_jumped(d, lost_J, report)) {
     d->lost_next_J += lost_J;
-  } else if (energy_J > 0 && dea_solid_resolved(d->driven.solid, lost_J / d->driven.copies)) {
+  } else if (energy_J > 0 && dea_solid_resolved(d->model->solid, lost_J / d->model->copies)) {
     error = fmax(error, fabs(lost_J) / energy_J);
   }
   if (!d->branch_jump.tried || d->step_s < 0.35 * d->branch_jump.step_s) {
@@ -452,7 +454,7 @@ static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step
                                 const struct dea_time_step *step,
                                 const struct dea_circuit_film *film)
 {
-  if (d->driven.channels) {
+  if (d->has_network) {
     DEA_TRY_ELSE(ctx, find_network(ctx, d, &d->network_next), dea_solid_time_reject(d->time));
     find_currents(d);
   }
@@ -460,7 +462,7 @@ static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step
     advance_network(d, step,
                     dea_solid_time_energies(d->time, true).supply -
                         dea_solid_time_energies(d->time, false).supply);
-    d->charged_J = d->driven.copies * dea_solid_time_charged_J(d->time, true);
+    d->charged_J = d->model->copies * dea_solid_time_charged_J(d->time, true);
     return DEA_OK;
   }
   dea_circuit_advance(&d->options.circuit, &d->circuit, step, film, &d->circuit_next);
@@ -497,7 +499,7 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
   }
   if (dea_circuit_is_ideal(&d->options.circuit) && !step->disconnected) {
     d->circuit_next.supply_work_J +=
-        d->driven.copies * (to.stored + to.branches - from.stored - from.branches);
+        d->model->copies * (to.stored + to.branches - from.stored - from.branches);
   }
   d->lost_next_J = d->lost_J;
   *error = 0;
@@ -528,7 +530,7 @@ void dea_circuit_step_point(const struct dea_circuit_step *d, struct dea_load_po
 {
   const struct dea_circuit_state *circuit = &d->circuit_next;
   const struct dea_solid_energies e = dea_solid_time_energies(d->time, true);
-  double copies = d->driven.copies;
+  double copies = d->model->copies;
   point->time_s = d->time_next_s;
   point->source_voltage_V = circuit->source_voltage_V;
   point->voltage_V = circuit->voltage_V;

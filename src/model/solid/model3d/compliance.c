@@ -1,11 +1,12 @@
-#include "model/solid/model3d/compliance.h"
-
+/* How a coordinate of a solid and its charge change with a force along the coordinate and with the
+ * voltage (docs/theory/reduced-model.md). */
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/adjoint.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/model3d/air_mass.h"
 #include "model/solid/model3d/solid_fields.h"
+#include "model/solid/model3d/solid_model.h"
 
 #include <assert.h>
 #include <lapacke.h>
@@ -15,10 +16,12 @@
 enum { COORDINATE, VOLTAGE, ANSWERS };
 
 struct work {
+  struct dea_model *model;
   struct dea_solid *solid;
+  const double *slope; // [dofs] of the coordinate by the unknowns
   struct dea_adjoint *adjoint;
   double *rate; // [dofs] dR/dV
-  double voltage_V;
+  double voltage_V, copies;
 };
 
 /* Residuals and energy are of second degree in the voltage, so that central differences over any
@@ -51,26 +54,27 @@ struct modes {
 };
 
 /* Added masses of the modes [MODES][dofs]. */
-static dea_status find_air(struct dea_context *ctx, const struct dea_air *air, const double *vector,
-                           size_t dofs, double out[MODES * MODES])
+static dea_status find_air(struct dea_context *ctx, const struct dea_model *model,
+                           const double *vector, size_t dofs, double out[MODES * MODES])
 {
   enum { CELLS = 3000 };
   static_assert((int)MODES <= (int)DEA_AIR_SHAPES_MAX, "room");
   struct dea_field_mesh *surface, *moved;
-  DEA_TRY(ctx, dea_solid_surface(ctx, air->film.solid, air->ply, &surface));
+  DEA_TRY(ctx, dea_solid_surface(ctx, model->solid, (int)model->plies.film, &surface));
   const size_t size = 3 * surface->point_count;
   double *shapes = dea_solid_alloc(ctx, MODES * size, sizeof *shapes);
   dea_status status = shapes == NULL ? DEA_E_MEMORY : DEA_OK;
   for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
-    status = dea_motions_surface(ctx, &air->film, air->ply, vector + k * dofs, &moved);
+    status = dea_solid_model_surface(ctx, model, vector + k * dofs, &moved);
     if (status == DEA_OK) {
       memcpy(shapes + k * size, dea_field_mesh_find(moved, "displacement_m")->values,
              size * sizeof *shapes);
       dea_field_mesh_destroy(ctx, moved);
     }
   }
-  status = status == DEA_OK ? dea_air_mass(ctx, surface, air->sector, CELLS, shapes, MODES, out)
-                            : status;
+  status = status == DEA_OK
+               ? dea_air_mass(ctx, surface, &model->mesh.sector, CELLS, shapes, MODES, out)
+               : status;
   dea_free(ctx, shapes);
   dea_field_mesh_destroy(ctx, surface);
   return DEA_CHAIN(ctx, status);
@@ -106,10 +110,9 @@ static dea_status add_air(struct dea_context *ctx, const double *A, double densi
 }
 
 /* With their parts of dq/dF and dq/dV; of a viscous film of those that move at once. */
-static dea_status find_modes(struct dea_context *ctx, struct work *w, double copies,
-                             const double *slope, const struct dea_air *air,
-                             struct dea_compliance *out)
+static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea_compliance *out)
 {
+  const double density = w->model->settings.reduced.air_kg_per_m3;
   const size_t dofs = w->solid->problem.dofs;
   double square[MODES], mass[MODES * MODES],
       *vector = dea_solid_alloc(ctx, MODES * dofs, sizeof *vector);
@@ -123,17 +126,17 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, double cop
   for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
     const double *mode = vector + k * dofs, omega = sqrt(square[k]);
     modes.inverse[k] = 1 / square[k];
-    modes.along[k] = dea_solid_dot(w->solid, mode, slope) / omega;
+    modes.along[k] = dea_solid_dot(w->solid, mode, w->slope) / omega;
     modes.by_rate[k] = -dea_solid_dot(w->solid, mode, w->rate) / omega;
   }
-  if (status == DEA_OK && air->density_kg_per_m3 > 0) {
-    status = find_air(ctx, air, vector, dofs, mass);
-    status = status == DEA_OK ? add_air(ctx, mass, air->density_kg_per_m3, &modes) : status;
+  if (status == DEA_OK && density > 0) {
+    status = find_air(ctx, w->model, vector, dofs, mass);
+    status = status == DEA_OK ? add_air(ctx, mass, density, &modes) : status;
   }
   for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
     out->modes[k] =
         (struct dea_compliance_mode){1 / (2 * acos(-1.0) * sqrt(modes.inverse[k])),
-                                     modes.along[k] * modes.along[k] / (copies * by_force),
+                                     modes.along[k] * modes.along[k] / (w->copies * by_force),
                                      modes.along[k] * modes.by_rate[k] / by_voltage};
   }
   dea_free(ctx, vector);
@@ -141,86 +144,99 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, double cop
 }
 
 /* du/dF = K^-1 q_u / copies, du/dV = -K^-1 R_V. */
-static dea_status find_slopes(struct dea_context *ctx, struct work *w, double copies,
-                              const double *slope, const double by_energy[2],
+static dea_status find_slopes(struct dea_context *ctx, struct work *w, const double by_energy[2],
                               struct dea_compliance *out)
 {
   const size_t size = w->solid->problem.dofs * sizeof(double);
   static const bool wanted[ANSWERS] = {true, true};
-  memcpy(dea_adjoint_slope(w->adjoint, COORDINATE), slope, size);
+  memcpy(dea_adjoint_slope(w->adjoint, COORDINATE), w->slope, size);
   memcpy(dea_adjoint_slope(w->adjoint, VOLTAGE), w->rate, size);
   DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, wanted));
   const double *by_force = dea_adjoint_answer(w->adjoint, COORDINATE),
                *by_rate = dea_adjoint_answer(w->adjoint, VOLTAGE);
-  out->by_force = dea_solid_dot(w->solid, by_force, slope) / copies;
+  out->by_force = dea_solid_dot(w->solid, by_force, w->slope) / w->copies;
   out->by_voltage = -dea_solid_dot(w->solid, by_force, w->rate);
-  out->charge_by_force = -dea_solid_dot(w->solid, by_rate, slope);
-  out->charge_C = -copies * by_energy[0];
-  out->charge_by_voltage = copies * (dea_solid_dot(w->solid, by_rate, w->rate) - by_energy[1]);
+  out->charge_by_force = -dea_solid_dot(w->solid, by_rate, w->slope);
+  out->charge_C = -w->copies * by_energy[0];
+  out->charge_by_voltage = w->copies * (dea_solid_dot(w->solid, by_rate, w->rate) - by_energy[1]);
   return DEA_OK;
 }
 
-/* Slopes of what moves at once and, unless air is NULL, its modes: with the tangent of a step that
- * takes no time. */
-static dea_status find_fast(struct dea_context *ctx, struct work *w, double copies,
-                            const double *slope, const struct dea_branches *branches,
-                            const struct dea_air *air, struct dea_compliance *out)
+/* Slopes of what moves at once and, where they are asked for, its modes: with the tangent of a step
+ * that takes no time. */
+static dea_status find_fast(struct dea_context *ctx, struct work *w, bool modes,
+                            struct dea_compliance *out)
 {
   struct dea_solid *s = w->solid;
   struct dea_internal_variables *held;
   static const bool wanted = true;
-  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, branches, &held));
+  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, w->model->plies.branches, &held));
   dea_internal_variables_begin(held, s, 0);
   s->state.internal_variables = held;
   dea_solid_forget(s);
   dea_status status = dea_adjoint_create(ctx, s, 1, &w->adjoint);
   if (status == DEA_OK) {
-    memcpy(dea_adjoint_slope(w->adjoint, 0), slope, s->problem.dofs * sizeof *slope);
+    memcpy(dea_adjoint_slope(w->adjoint, 0), w->slope, s->problem.dofs * sizeof *w->slope);
     status = dea_adjoint_solve(ctx, w->adjoint, &wanted);
   }
   if (status == DEA_OK) {
     const double *answer = dea_adjoint_answer(w->adjoint, 0);
-    out->fast_by_force = dea_solid_dot(s, answer, slope) / copies;
+    out->fast_by_force = dea_solid_dot(s, answer, w->slope) / w->copies;
     out->fast_by_voltage = -dea_solid_dot(s, answer, w->rate);
   }
   dea_adjoint_destroy(ctx, w->adjoint);
   w->adjoint = NULL;
-  if (status == DEA_OK && air != NULL) {
-    status = find_modes(ctx, w, copies, slope, air, out);
-  }
+  status = status == DEA_OK && modes ? find_modes(ctx, w, out) : status;
   s->state.internal_variables = NULL;
   dea_solid_forget(s);
   dea_internal_variables_destroy(ctx, held);
   return DEA_CHAIN(ctx, status);
 }
 
-dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid, double copies,
-                               double voltage_V, const double *slope,
-                               const struct dea_branches *branches, const struct dea_air *air,
-                               int with, struct dea_compliance *out)
+static dea_status find_compliance(struct dea_context *ctx, struct work *w, int with,
+                                  struct dea_compliance *out)
 {
-  struct work w = {.solid = solid, .voltage_V = voltage_V};
-  double energy_J, by_energy[2] = {0};
-  out->fast_by_force = out->fast_by_voltage = NAN;
-  w.rate = dea_solid_alloc(ctx, solid->problem.dofs, sizeof *w.rate);
+  double by_energy[2] = {0};
+  const bool modes = with & DEA_COMPLIANCE_WITH_MODES;
+  dea_status status = dea_adjoint_create(ctx, w->solid, ANSWERS, &w->adjoint);
+  status = status == DEA_OK ? find_rate(ctx, w, by_energy) : status;
+  status = status == DEA_OK ? find_slopes(ctx, w, by_energy, out) : status;
+  dea_adjoint_destroy(ctx, w->adjoint);
+  w->adjoint = NULL;
+  if (status == DEA_OK && (with & DEA_COMPLIANCE_WITH_FAST)) {
+    status = find_fast(ctx, w, modes, out);
+  } else if (status == DEA_OK && modes) {
+    status = find_modes(ctx, w, out);
+  }
+  return status;
+}
+
+dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,
+                                      const struct dea_control *coordinate, int with,
+                                      struct dea_compliance *out)
+{
+  struct dea_solid *s = model->solid;
+  double energy_J;
+  DEA_TRY(ctx, dea_solid_model_find_coordinate(ctx, model, coordinate));
+  DEA_TRY(ctx, with & DEA_COMPLIANCE_WITH_MODES ? dea_solid_check_densities(ctx, model) : DEA_OK);
+  *out = (struct dea_compliance){
+      .force = model->pull.force, .fast_by_force = NAN, .fast_by_voltage = NAN};
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    out->value += model->pull.slope[i] * s->state.u[i];
+  }
   for (size_t k = 0; k < DEA_COMPLIANCE_MODES; k++) {
     out->modes[k] = (struct dea_compliance_mode){NAN, NAN, NAN};
   }
-  dea_status status =
-      w.rate == NULL ? DEA_E_MEMORY : dea_adjoint_create(ctx, solid, ANSWERS, &w.adjoint);
-  status = status == DEA_OK ? find_rate(ctx, &w, by_energy) : status;
-  status = status == DEA_OK ? find_slopes(ctx, &w, copies, slope, by_energy, out) : status;
-  dea_adjoint_destroy(ctx, w.adjoint);
-  w.adjoint = NULL;
-  const bool modes = with & DEA_COMPLIANCE_WITH_MODES;
-  if (status == DEA_OK && (with & DEA_COMPLIANCE_WITH_FAST)) {
-    status = find_fast(ctx, &w, copies, slope, branches, modes ? air : NULL, out);
-  } else if (status == DEA_OK && modes) {
-    status = find_modes(ctx, &w, copies, slope, air, out);
-  }
-  dea_solid_hold_potential(solid, voltage_V, solid->state.u);
+  struct work w = {.model = model,
+                   .solid = s,
+                   .slope = model->pull.slope,
+                   .voltage_V = model->at.voltage_V,
+                   .copies = model->copies};
+  w.rate = dea_solid_alloc(ctx, s->problem.dofs, sizeof *w.rate);
+  dea_status status = w.rate == NULL ? DEA_E_MEMORY : find_compliance(ctx, &w, with, out);
+  dea_solid_hold_potential(s, w.voltage_V, s->state.u);
   if (status == DEA_OK) { // reactions are those of the equilibrium again
-    status = dea_solid_assemble(ctx, solid, voltage_V, DEA_FORCE, &energy_J);
+    status = dea_solid_assemble(ctx, s, w.voltage_V, DEA_FORCE, &energy_J);
   }
   dea_free(ctx, w.rate);
   return DEA_CHAIN(ctx, status);

@@ -1,104 +1,18 @@
-#include "model/solid/model3d/gradient.h"
-
+/* Slopes of quantities of a solid's equilibrium by numbers of its design, by one linear answer a
+ * quantity and differences of the residual at fixed unknowns a number (docs/theory/gradients.md).
+ */
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/charge_control.h"
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/curvature.h"
 #include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/adjoint.h"
 #include "model/solid/equilibrium/modes.h"
+#include "model/solid/model3d/solid_model.h"
 #include "result/columns.h"
 
 #include <math.h>
 #include <string.h>
-
-// The film ----------------------------------------------------------------------------------------
-
-static const char *const extremes[DEA_FILM_EXTREMES] = {
-    [DEA_FILM_FIELD] = "true_field_V_per_m",
-    [DEA_FILM_MARGIN] = "breakdown_margin",
-    [DEA_FILM_TENSION] = "min_tension_N_per_m",
-};
-
-void dea_gradient_places_find(const struct dea_gradient_film *film, struct dea_gradient_places *out)
-{
-  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
-    out->known[i] =
-        dea_solid_extreme_find(film->solid, film->films, (enum dea_film_extreme)i, &out->at[i]);
-  }
-}
-
-dea_status dea_gradient_film_slope(struct dea_context *ctx, const struct dea_gradient_film *film,
-                                   const struct dea_gradient_places *places, int column,
-                                   double *out, double *pressures, bool *known)
-{
-  const char *key = dea_point_columns[column].key;
-  int extreme = 0;
-  while (extreme < DEA_FILM_EXTREMES && strcmp(key, extremes[extreme]) != 0) {
-    extreme++;
-  }
-  if (extreme < DEA_FILM_EXTREMES) {
-    *known = places->known[extreme];
-    if (*known) {
-      dea_solid_extreme_slope(film->solid, film->films, (enum dea_film_extreme)extreme,
-                              &places->at[extreme], out, pressures);
-    }
-  } else if (strcmp(key, "capacitance_F") == 0) {
-    DEA_TRY(ctx, dea_solid_capacitance_slope(ctx, film->solid, out, known));
-    for (size_t i = 0; i < film->solid->problem.dofs; i++) {
-      out[i] *= film->copies;
-    }
-  } else { // forces of the energy are 0
-    *known = strcmp(key, "energy_J") == 0 || strcmp(key, "nominal_field_V_per_m") == 0 ||
-             strcmp(key, "voltage_V") == 0;
-  }
-  return DEA_OK;
-}
-
-static bool asks(const struct dea_gradient_request *ask, const char *key)
-{
-  for (size_t i = 0; i < ask->column_count; i++) {
-    if (strcmp(dea_point_columns[ask->columns[i]].key, key) == 0) {
-      return true;
-    }
-  }
-  return false;
-}
-
-dea_status dea_gradient_film_at(struct dea_context *ctx, const struct dea_gradient_film *film,
-                                const struct dea_gradient_places *places,
-                                const struct dea_gradient_request *ask, double voltage_V,
-                                struct dea_load_point *out)
-{
-  double *const values[DEA_FILM_EXTREMES] = {
-      [DEA_FILM_FIELD] = &out->true_field_V_per_m,
-      [DEA_FILM_MARGIN] = &out->breakdown_margin,
-      [DEA_FILM_TENSION] = &out->min_tension_N_per_m,
-  };
-  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
-    if (places->known[i]) {
-      *values[i] = dea_solid_extreme_at(film->solid, film->films, (enum dea_film_extreme)i,
-                                        &places->at[i], voltage_V);
-    }
-  }
-  if (asks(ask, "capacitance_F")) {
-    DEA_TRY(ctx, dea_solid_capacitance_wide(ctx, film->solid, &out->capacitance_F));
-    out->capacitance_F *= film->copies;
-  }
-  return DEA_OK;
-}
-
-dea_status dea_gradient_rest_energy(struct dea_solid *s, const struct dea_gradient_request *ask,
-                                    double *u, double *multipliers, double *energy_J)
-{
-  double *own = s->state.multiplier;
-  if (!asks(ask, "energy_J")) {
-    return DEA_OK;
-  }
-  s->state.multiplier = multipliers;
-  dea_status status = dea_solid_energy(s, u, 0, energy_J);
-  s->state.multiplier = own;
-  return status;
-}
 
 // Gradients ---------------------------------------------------------------------------------------
 
@@ -125,7 +39,9 @@ struct border {
 };
 
 struct work {
-  const struct dea_gradient_owner *owner;
+  struct dea_model *model;
+  struct dea_solid *solid; // its own
+  double voltage_V;
   const struct dea_gradient_request *ask;
   struct dea_adjoint *adjoint;
   bool *known;          // [dea_gradient_width + 1] there is an answer; the last one: the border's
@@ -145,11 +61,6 @@ struct work {
 static bool is_frequency(int column)
 {
   return strcmp(dea_point_columns[column].key, "frequency_Hz") == 0;
-}
-
-bool dea_gradient_asks_mode(const struct dea_gradient_request *ask)
-{
-  return asks(ask, "frequency_Hz");
 }
 
 /* Which mode a column is of. */
@@ -190,15 +101,26 @@ static dea_status get_mode(struct dea_context *ctx, struct work *w, size_t i, co
   return DEA_OK;
 }
 
-/* All up to the last that is asked for, by themselves. */
+/* From the lowest to the last whose frequency is asked for; 0: none. */
+static size_t mode_count(const struct dea_gradient_request *ask)
+{
+  size_t count = 0;
+  for (size_t i = 0; i < ask->column_count; i++) {
+    if (is_frequency(ask->columns[i]) && mode_of(ask, i) >= count) {
+      count = mode_of(ask, i) + 1;
+    }
+  }
+  return count;
+}
+
+/* All of them, by themselves. */
 static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
-  struct dea_solid *s = w->owner->solid;
+  struct dea_solid *s = w->solid;
   const size_t dofs = s->problem.dofs;
-  for (size_t i = 0; i < w->ask->column_count; i++) {
-    if (is_frequency(w->ask->columns[i]) && mode_of(w->ask, i) >= w->mode_count) {
-      w->mode_count = mode_of(w->ask, i) + 1;
-    }
+  w->mode_count = mode_count(w->ask);
+  if (w->mode_count == 0) {
+    return DEA_OK;
   }
   const size_t count = w->mode_count + 1; // the last one is only compared
   double *v = dea_arena_alloc(memory, count * dofs, sizeof(double));
@@ -217,7 +139,7 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea
 static double step_along(const struct work *w, const double *v)
 {
   static const double share = 0.02;
-  const struct dea_solid *s = w->owner->solid;
+  const struct dea_solid *s = w->solid;
   double thinnest_m = INFINITY, largest = 0;
   for (size_t e = 0; e < s->problem.grid->element_count; e++) {
     const struct dea_part_material *film = dea_solid_part_material(s, e);
@@ -248,7 +170,7 @@ static dea_status prepare_modes(struct dea_context *ctx, struct work *w, struct 
 static dea_status assemble_along(struct dea_context *ctx, struct work *w, const struct line *line,
                                  double voltage_V, double steps)
 {
-  struct dea_solid *s = w->owner->solid;
+  struct dea_solid *s = w->solid;
   const size_t dofs = s->problem.dofs, multipliers = dea_adjoint_multipliers(w->adjoint);
   double energy_J;
   dea_solid_state_get(s, w->here); // what is held may have been moved
@@ -280,14 +202,14 @@ static const double by_places[2][PLACES] = {
 static dea_status add_along(struct dea_context *ctx, struct work *w, const struct line *line,
                             int order, double factor, double *out, double *pressures)
 {
-  const struct dea_solid *s = w->owner->solid;
+  const struct dea_solid *s = w->solid;
   const int middle = PLACES / 2;
   for (int k = 0; k < PLACES; k++) {
     const double times = by_places[order - 1][k] * factor / pow(line->step, order);
     if (times == 0) {
       continue;
     }
-    DEA_TRY(ctx, assemble_along(ctx, w, line, w->owner->voltage_V, k - middle));
+    DEA_TRY(ctx, assemble_along(ctx, w, line, w->voltage_V, k - middle));
     for (size_t i = 0; i < s->problem.dofs; i++) {
       out[i] += times * s->work.g[i];
     }
@@ -301,10 +223,11 @@ static dea_status add_along(struct dea_context *ctx, struct work *w, const struc
 static dea_status add_along_mode(struct dea_context *ctx, struct work *w, const struct mode *m,
                                  double *out, double *pressures)
 {
-  dea_status status = w->owner->hold != NULL ? w->owner->hold(ctx, w->owner->model) : DEA_OK;
+  const bool pressed = w->model->indent != NULL;
+  dea_status status = pressed ? dea_variant_hold_tip(ctx, w->model) : DEA_OK;
   status = status == DEA_OK ? add_along(ctx, w, &m->line, 2, m->rate, out, pressures) : status;
-  if (w->owner->hold != NULL) {
-    w->owner->leave(ctx, w->owner->model);
+  if (pressed) {
+    dea_variant_leave(ctx, w->model);
   }
   return status;
 }
@@ -313,12 +236,11 @@ static dea_status add_along_mode(struct dea_context *ctx, struct work *w, const 
  * that direction, as the tangent is symmetric. */
 static dea_status monitor_slope(struct dea_context *ctx, struct work *w, size_t i, size_t at)
 {
-  const size_t dofs = w->owner->solid->problem.dofs;
+  const size_t dofs = w->solid->problem.dofs;
   double *out = dea_adjoint_slope(w->adjoint, at);
   bool is_force = false;
   memset(w->force_direction, 0, dofs * sizeof *w->force_direction);
-  DEA_TRY(ctx,
-          w->owner->monitor_slope(ctx, w->owner->model, i, out, w->force_direction, &w->known[at]));
+  w->known[at] = dea_variant_monitor_slope(w->model, i, out, w->force_direction);
   for (size_t k = 0; k < dofs && w->known[at]; k++) {
     is_force = is_force || w->force_direction[k] != 0;
   }
@@ -334,7 +256,7 @@ static dea_status monitor_slope(struct dea_context *ctx, struct work *w, size_t 
 static dea_status mode_at(struct dea_context *ctx, struct work *w, const struct mode *m,
                           double voltage_V, double *out)
 {
-  struct dea_solid *s = w->owner->solid;
+  struct dea_solid *s = w->solid;
   double square, mass;
   dea_solid_hold_potential(s, voltage_V, s->state.u);
   memcpy(w->moving, m->v, s->problem.dofs * sizeof *w->moving);
@@ -354,11 +276,10 @@ enum { RATE, NULL_MODE, OF_LIMIT };
 /* dR/dV at the unknowns as they are, times twice by_V, added to out [dofs]. */
 static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_V, double *out)
 {
-  const struct dea_solid *s = w->owner->solid;
+  const struct dea_solid *s = w->solid;
   double energy_J;
   for (int side = -1; side <= 1; side += 2) {
-    DEA_TRY(ctx,
-            dea_adjoint_assemble(ctx, w->adjoint, w->owner->voltage_V + side * by_V, &energy_J));
+    DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, w->voltage_V + side * by_V, &energy_J));
     for (size_t i = 0; i < s->problem.dofs; i++) {
       out[i] += side * s->work.g[i];
     }
@@ -377,14 +298,12 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w)
       w->known[i] = m->known;
       DEA_TRY(ctx, m->known ? add_along_mode(ctx, w, m, out, pressures) : DEA_OK);
     } else {
-      DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i], out, pressures,
-                                   &w->known[i]));
+      DEA_TRY(ctx,
+              dea_variant_slope(ctx, w->model, w->ask->columns[i], out, pressures, &w->known[i]));
     }
   }
   for (size_t i = 0; i < w->ask->monitor_count; i++) {
-    const size_t at = w->ask->column_count + i;
-    w->known[at] = false;
-    DEA_TRY(ctx, w->owner->monitor_slope != NULL ? monitor_slope(ctx, w, i, at) : DEA_OK);
+    DEA_TRY(ctx, monitor_slope(ctx, w, i, w->ask->column_count + i));
   }
   return DEA_OK;
 }
@@ -395,7 +314,7 @@ static dea_status add_quantities(struct dea_context *ctx, struct work *w, double
                                  double energy_J, double *out)
 {
   struct dea_load_point point;
-  DEA_TRY(ctx, w->owner->point(ctx, w->owner->model, voltage_V, energy_J, &point));
+  DEA_TRY(ctx, dea_variant_point(ctx, w->model, voltage_V, energy_J, &point));
   for (size_t i = 0; i < w->ask->column_count; i++) {
     if (is_frequency(w->ask->columns[i]) && w->known[i]) {
       const struct mode *m = &w->modes[mode_of(w->ask, i)];
@@ -403,8 +322,8 @@ static dea_status add_quantities(struct dea_context *ctx, struct work *w, double
     }
     out[i] += dea_point_get(&point, w->ask->columns[i]);
   }
-  if (w->owner->monitors != NULL && w->ask->monitor_count > 0) {
-    DEA_TRY(ctx, w->owner->monitors(ctx, w->owner->model, w->motion));
+  if (w->ask->monitor_count > 0) {
+    DEA_TRY(ctx, dea_variant_monitors(ctx, w->model, w->motion));
     for (size_t i = 0; i < w->ask->monitor_count; i++) {
       out[w->ask->column_count + i] += w->motion[i];
     }
@@ -418,7 +337,7 @@ static dea_status add_quantities(struct dea_context *ctx, struct work *w, double
 /* J - lambda . R - mu . C of every quantity on one side of a change. */
 static dea_status evaluate(struct dea_context *ctx, struct work *w, double voltage_V, double *out)
 {
-  struct dea_solid *s = w->owner->solid;
+  struct dea_solid *s = w->solid;
   double energy_J;
   s->state.voltage_V = voltage_V;
   DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J));
@@ -438,8 +357,8 @@ static dea_status evaluate(struct dea_context *ctx, struct work *w, double volta
  * slopes go where those of answers begin. */
 static dea_status begin_border(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
-  const size_t dofs = w->owner->solid->problem.dofs, width = dea_gradient_width(w->ask);
-  const double by_V = share_of_voltage * w->owner->voltage_V;
+  const size_t dofs = w->solid->problem.dofs, width = dea_gradient_width(w->ask);
+  const double by_V = share_of_voltage * w->voltage_V;
   struct border *b = &w->border;
   double *first = dea_adjoint_slope(w->adjoint, 0), *of_v = dea_adjoint_slope(w->adjoint, width);
   bool known;
@@ -457,10 +376,10 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
   wanted[width] = true;
   DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, wanted));
   memset(first, 0, dofs * sizeof *first);
-  DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, dea_point_column_find("electrode_stretch"),
-                               b->slope, dea_adjoint_pressure_slope(w->adjoint, width), &known));
-  b->along = dea_solid_dot(w->owner->solid, dea_adjoint_answer(w->adjoint, width), b->slope);
-  b->along_rate = dea_solid_dot(w->owner->solid, dea_adjoint_answer(w->adjoint, width), b->rate);
+  DEA_TRY(ctx, dea_variant_slope(ctx, w->model, dea_point_column_find("electrode_stretch"),
+                                 b->slope, dea_adjoint_pressure_slope(w->adjoint, width), &known));
+  b->along = dea_solid_dot(w->solid, dea_adjoint_answer(w->adjoint, width), b->slope);
+  b->along_rate = dea_solid_dot(w->solid, dea_adjoint_answer(w->adjoint, width), b->rate);
   return known ? DEA_OK
                : dea_fail(ctx, DEA_E_UNSUPPORTED,
                           "model 3d does not support the electrode's stretch here");
@@ -471,21 +390,21 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
 static dea_status quantities_at(struct dea_context *ctx, struct work *w, double voltage_V,
                                 double *out)
 {
-  struct dea_solid *s = w->owner->solid;
+  struct dea_solid *s = w->solid;
   double energy_J;
   s->state.voltage_V = voltage_V;
   dea_status status = dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J);
   status = status == DEA_OK ? add_quantities(ctx, w, voltage_V, energy_J, out) : status;
-  s->state.voltage_V = w->owner->voltage_V;
+  s->state.voltage_V = w->voltage_V;
   return status;
 }
 
 /* What each quantity takes of the stretch's slope. */
 static dea_status share_border(struct dea_context *ctx, struct work *w)
 {
-  const struct dea_solid *s = w->owner->solid;
+  const struct dea_solid *s = w->solid;
   const size_t width = dea_gradient_width(w->ask);
-  const double V = w->owner->voltage_V, by_V = share_of_voltage * V;
+  const double V = w->voltage_V, by_V = share_of_voltage * V;
   struct border *b = &w->border;
   DEA_TRY(ctx, quantities_at(ctx, w, V - by_V, b->by_voltage));
   DEA_TRY(ctx, quantities_at(ctx, w, V + by_V, b->by_voltage + width));
@@ -508,7 +427,7 @@ static void end_border(struct work *w)
   const struct border *b = &w->border;
   for (size_t i = 0; i < width; i++) {
     const double *lambda = dea_adjoint_answer(w->adjoint, i);
-    const double left = b->by_voltage[i] - dea_solid_dot(w->owner->solid, lambda, b->rate);
+    const double left = b->by_voltage[i] - dea_solid_dot(w->solid, lambda, b->rate);
     if (w->known[i]) {
       dea_adjoint_add(w->adjoint, i, left / b->along_rate, width);
     }
@@ -536,13 +455,13 @@ static dea_status difference(struct dea_context *ctx, struct work *w,
                              const struct dea_design_change *change)
 {
   for (int k = 0; k < 2; k++) {
-    dea_status status = w->owner->enter(ctx, w->owner->model, change, k);
+    dea_status status = dea_variant_enter(ctx, w->model, change, k);
     if (status == DEA_OK) {
-      const double voltage_V = w->ask->holds_stretch ? w->owner->voltage_V : change->voltage_V[k];
+      const double voltage_V = w->ask->holds_stretch ? w->voltage_V : change->voltage_V[k];
       status = evaluate(ctx, w, voltage_V, w->side + (size_t)k * dea_gradient_width(w->ask));
     }
-    w->owner->solid->state.voltage_V = w->owner->voltage_V;
-    w->owner->leave(ctx, w->owner->model);
+    w->solid->state.voltage_V = w->voltage_V;
+    dea_variant_leave(ctx, w->model);
     DEA_TRY(ctx, status);
   }
   return DEA_OK;
@@ -577,28 +496,26 @@ static dea_status find_by_changes(struct dea_context *ctx, struct work *w, doubl
 /* For what residuals are taken along. */
 static dea_status reserve(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
-  const size_t states = w->owner->solid->problem.dofs + dea_adjoint_multipliers(w->adjoint);
+  const size_t states = w->solid->problem.dofs + dea_adjoint_multipliers(w->adjoint);
   w->here = dea_arena_alloc(memory, states, sizeof(double));
   w->there = dea_arena_alloc(memory, states, sizeof(double));
   return dea_solid_allreduce(ctx, dea_arena_status(memory));
 }
 
 /* At the equilibrium. */
-static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+static dea_status find_here(struct dea_context *ctx, struct dea_model *model,
                             const struct dea_gradient_request *ask, double *out)
 {
-  struct dea_solid *s = owner->solid;
+  struct dea_solid *s = model->solid;
   struct dea_arena memory = {.ctx = ctx};
-  struct work w = {.owner = owner, .ask = ask};
+  struct work w = {.model = model, .solid = s, .voltage_V = model->at.voltage_V, .ask = ask};
   double energy_J;
   w.known = dea_arena_alloc(&memory, dea_gradient_width(ask) + 1, sizeof *w.known);
   w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
   w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
   w.force_direction = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
   dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&memory));
-  if (status == DEA_OK && dea_gradient_asks_mode(ask)) { // first: it needs a factor of its own
-    status = find_modes(ctx, &w, &memory);
-  }
+  status = status == DEA_OK ? find_modes(ctx, &w, &memory) : status; // first: by another factor
   if (status == DEA_OK) {
     s->work.takes_small_pivots = ask->holds_stretch; // at a limit point there is one
     status = dea_adjoint_create(ctx, s, dea_gradient_width(ask) + 1, &w.adjoint);
@@ -608,9 +525,9 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   status = status == DEA_OK ? prepare_modes(ctx, &w, &memory) : status;
   status = status == DEA_OK ? answer(ctx, &w, &memory) : status;
   status = status == DEA_OK ? find_by_changes(ctx, &w, out) : status;
-  dea_solid_hold_potential(s, owner->voltage_V, s->state.u);
+  dea_solid_hold_potential(s, w.voltage_V, s->state.u);
   if (status == DEA_OK) { // scales and reactions are those of the equilibrium again
-    status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
+    status = dea_solid_assemble(ctx, s, w.voltage_V, DEA_FORCE, &energy_J);
   }
   dea_adjoint_destroy(ctx, w.adjoint);
   dea_arena_free(&memory);
@@ -623,7 +540,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
  * square of the angle to what this one has answered to. */
 static void begin_step(struct work *w, size_t from, double *turn)
 {
-  const size_t dofs = w->owner->solid->problem.dofs;
+  const size_t dofs = w->solid->problem.dofs;
   const double *answer = dea_adjoint_answer(w->adjoint, from);
   double *next = dea_adjoint_slope(w->adjoint, NULL_MODE), *last = w->null_mode;
   double size = 0, product = 0, before = 0;
@@ -658,7 +575,7 @@ static dea_status find_null_mode(struct dea_context *ctx, struct work *w)
 /* -(w . dR/dP) / (w . dR/dV), where the solid is at the limit point. */
 static dea_status find_limit(struct dea_context *ctx, struct work *w, double *out)
 {
-  const double V = w->owner->voltage_V, by_V = share_of_voltage * V;
+  const double V = w->voltage_V, by_V = share_of_voltage * V;
   double side[2], energy_J;
   DEA_TRY(ctx, find_rate(ctx, w, by_V, dea_adjoint_slope(w->adjoint, RATE)));
   DEA_TRY(ctx, find_null_mode(ctx, w));
@@ -674,15 +591,14 @@ static dea_status find_limit(struct dea_context *ctx, struct work *w, double *ou
 }
 
 /* At the state that the ending has kept. */
-static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+static dea_status find_at_limit(struct dea_context *ctx, struct dea_model *model,
                                 const struct dea_gradient_request *ask, double *out)
 {
-  struct dea_solid *s = owner->solid;
-  struct dea_gradient_owner there = *owner;
+  struct dea_solid *s = model->solid;
   double side[2];
-  struct work w = {.owner = &there, .ask = ask, .side = side};
-  dea_solid_restore_state(s, &owner->outcome->at_limit);
-  there.voltage_V = dea_solid_voltage(s);
+  dea_solid_restore_state(s, &model->at.outcome.at_limit);
+  struct work w = {
+      .model = model, .solid = s, .voltage_V = dea_solid_voltage(s), .ask = ask, .side = side};
   w.null_mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *w.null_mode);
   DEA_TRY_MEMORY(w.null_mode != NULL);
   s->work.takes_small_pivots = true;
@@ -694,29 +610,43 @@ static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradie
   return status;
 }
 
-static dea_status find_there(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+static dea_status find_there(struct dea_context *ctx, struct dea_model *model,
                              const struct dea_gradient_request *ask, double *out)
 {
-  struct dea_solid *s = owner->solid;
+  struct dea_solid *s = model->solid;
   struct dea_solid_saved_state here;
   double energy_J;
-  if (owner->outcome->at_limit.state == NULL) {
+  if (model->at.outcome.at_limit.state == NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "no limit point was located on the way of the last solve");
   }
   dea_status status = dea_solid_save_state(ctx, s, &here);
   if (status == DEA_OK) {
-    status = find_at_limit(ctx, owner, ask, out);
+    status = find_at_limit(ctx, model, ask, out);
     dea_solid_restore_state(s, &here);
   }
-  status = status == DEA_OK ? dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J)
+  status = status == DEA_OK ? dea_solid_assemble(ctx, s, model->at.voltage_V, DEA_FORCE, &energy_J)
                             : status;
   dea_solid_saved_state_free(&here);
   return DEA_CHAIN(ctx, status);
 }
 
-dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                             const struct dea_gradient_request *ask, double *out)
+dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *model,
+                                    const struct dea_gradient_request *ask, double *out)
 {
-  return ask->of_limit ? find_there(ctx, owner, ask, out) : find_here(ctx, owner, ask, out);
+  struct dea_arena memory = {.ctx = ctx};
+  dea_solid_model_end_history(ctx, model);
+  if (dea_charge_is_held(model->solid)) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "gradients at a given charge are not supported");
+  }
+  DEA_TRY(ctx, mode_count(ask) > 0 ? dea_solid_check_densities(ctx, model) : DEA_OK);
+  dea_solid_liquids_stiffen(model, true);
+  dea_status status = dea_variant_begin(ctx, model, ask, &memory);
+  if (status == DEA_OK) {
+    status = ask->of_limit ? find_there(ctx, model, ask, out) : find_here(ctx, model, ask, out);
+  }
+  dea_solid_liquids_stiffen(model, false);
+  model->variant = NULL;
+  dea_arena_free(&memory);
+  return DEA_CHAIN(ctx, status);
 }

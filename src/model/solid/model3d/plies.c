@@ -1,6 +1,5 @@
 #include "model/solid/model3d/plies.h"
 
-#include "model/solid/model3d/circuit_step.h"
 #include "model/solid/point/membrane_point.h"
 #include "model/solid_check.h"
 
@@ -114,6 +113,14 @@ static dea_status fill_part_material(struct dea_context *ctx, const struct dea_l
   return DEA_OK;
 }
 
+/* 1/(resistivity permittivity) of a film of a material; 0: it does not leak. */
+static double leakage_per_s(const struct dea_material *material,
+                            const struct dea_part_material *part_material)
+{
+  double rho = material->resistivity_ohm_m;
+  return rho > 0 ? 1 / (rho * part_material->permittivity_F_per_m) : 0; // as it is pre-stretched
+}
+
 static void find_thinnest(const struct dea_layout_mesh *mesh, struct dea_plies *out)
 {
   const struct dea_layout *l = mesh->layout;
@@ -155,7 +162,7 @@ dea_status dea_plies_create(struct dea_context *ctx, const struct dea_layout_mes
     out->films[i] = (struct dea_solid_film_data){film ? material : NULL,
                                                  sqrt(ply->pre_stretch[0] * ply->pre_stretch[1])};
     out->leakage_per_s[i] =
-        mesh->dielectric[i] ? dea_leakage_per_s(material, &out->part_materials[i]) : 0;
+        mesh->dielectric[i] ? leakage_per_s(material, &out->part_materials[i]) : 0;
     out->branches[i].count = material->branch_count;
     memcpy(out->branches[i].branch, material->branches,
            material->branch_count * sizeof *material->branches);

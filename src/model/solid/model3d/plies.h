@@ -9,7 +9,7 @@ struct dea_plies {
   struct dea_part_material *part_materials; // [ply_count], as all
   struct dea_solid_film_data *films;
   struct dea_branches *branches;
-  double *leakage_per_s; // of films, see circuit_step.h
+  double *leakage_per_s; // of films, conductance over capacitance
   size_t film;           // the first dielectric ply, or the first of all
   double thinnest_m;     // least unstretched thickness of dielectric layers over their voltage
 };

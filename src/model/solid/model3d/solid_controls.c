@@ -1,7 +1,6 @@
 /* Controls beside the voltage of the model "3d": bodies and pressures that are moved. */
 #include "model/solid/assembly/charge_control.h"
 #include "model/solid/equilibrium/load_steps.h"
-#include "model/solid/model3d/compliance.h"
 #include "model/solid/model3d/solid_model.h"
 
 #include <math.h>
@@ -51,9 +50,8 @@ static double where_control_is(const struct dea_model *model, const struct dea_c
                                             : model->push[control->body][control->component];
 }
 
-/* The slope of a coordinate by the displacements, which does not depend on them. */
-static dea_status find_coordinate(struct dea_context *ctx, struct dea_model *model,
-                                  const struct dea_control *control)
+dea_status dea_solid_model_find_coordinate(struct dea_context *ctx, struct dea_model *model,
+                                           const struct dea_control *control)
 {
   struct dea_model_pull *pull = &model->pull;
   const struct dea_control *old = &pull->coordinate;
@@ -94,7 +92,7 @@ static dea_status set_conjugate(struct dea_context *ctx, struct dea_model *model
     force[i] -= model->pull.force / model->copies * slope[i];
   }
   model->pull.force = 0;
-  DEA_TRY(ctx, find_coordinate(ctx, model, control));
+  DEA_TRY(ctx, dea_solid_model_find_coordinate(ctx, model, control));
   slope = model->pull.slope;
   for (size_t i = 0; i < model->solid->problem.dofs; i++) {
     force[i] += value / model->copies * slope[i];
@@ -103,7 +101,7 @@ static dea_status set_conjugate(struct dea_context *ctx, struct dea_model *model
   return DEA_OK;
 }
 
-/* What the next solve goes to. */
+/* What the next solve goes to, of a control that was checked. */
 static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
                               const struct dea_control *control, double value)
 {
@@ -133,6 +131,13 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
     break;
   }
   return DEA_OK;
+}
+
+dea_status dea_solid_model_set_control(struct dea_context *ctx, struct dea_model *model,
+                                       const struct dea_control *control, double value)
+{
+  DEA_TRY(ctx, check_control(ctx, model, control, value));
+  return DEA_CHAIN(ctx, set_control(ctx, model, control, value));
 }
 
 /* That it has gone past a limit point of the control, where it has moved to what that was set to.
@@ -187,7 +192,7 @@ dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model
   char why[200];
   double fraction;
   DEA_TRY(ctx, check_control(ctx, model, control, value));
-  dea_solver_state_end_history(ctx, &model->at);
+  dea_solid_model_end_history(ctx, model);
   double from = where_control_is(model, control);
   DEA_TRY(ctx, set_control(ctx, model, control, value));
   dea_status status = dea_step_outcome_move(ctx, &model->at.outcome, &model->at.report, &fraction);
@@ -212,36 +217,4 @@ dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model
                                  1e-3 * model->at.voltage_V));
   }
   return DEA_CHAIN(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
-}
-
-dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,
-                                      const struct dea_control *coordinate, int with,
-                                      struct dea_compliance *out)
-{
-  DEA_TRY(ctx, find_coordinate(ctx, model, coordinate));
-  DEA_TRY(ctx, with & DEA_COMPLIANCE_WITH_MODES ? dea_solid_check_densities(ctx, model) : DEA_OK);
-  *out = (struct dea_compliance){.force = model->pull.force};
-  const double *u = dea_solid_displacement(model->solid);
-  for (size_t i = 0; i < model->solid->problem.dofs; i++) {
-    out->value += model->pull.slope[i] * u[i];
-  }
-  const struct dea_air air = {model->settings.reduced.air_kg_per_m3,
-                              {.solid = model->solid, .grid = model->mesh.grid},
-                              (int)model->plies.film,
-                              &model->mesh.sector};
-  return DEA_CHAIN(ctx,
-                   dea_compliance_find(ctx, model->solid, model->copies, model->at.voltage_V,
-                                       model->pull.slope, model->plies.branches, &air, with, out));
-}
-
-/* A step in time, in which a control may move. */
-dea_status dea_solid_model_advance(struct dea_context *ctx, struct dea_model *model,
-                                   const struct dea_time_step *step, struct dea_load_point *out,
-                                   double *error)
-{
-  if (step->control != NULL) {
-    DEA_TRY(ctx, check_control(ctx, model, step->control, step->value));
-    DEA_TRY(ctx, set_control(ctx, model, step->control, step->value));
-  }
-  return DEA_CHAIN(ctx, dea_solver_state_advance(ctx, model, step, out, error));
 }

@@ -223,6 +223,7 @@ dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_dev
 {
   model->device = device;
   model->settings = *settings;
+  model->at.outcome.model = model;
   model->memory.ctx = ctx;
   model->pressure_factor = 1;
   DEA_TRY(ctx, dea_solid_start(ctx));
@@ -272,7 +273,9 @@ void dea_solid_model_destroy(struct dea_context *ctx, struct dea_model *model)
     return;
   }
   dea_observer_destroy(ctx, model->observer);
-  dea_solver_state_free(ctx, &model->at);
+  dea_circuit_step_destroy(ctx, model->at.driven);
+  dea_step_outcome_free(&model->at.outcome);
+  dea_free(ctx, model->at.soft);
   dea_free(ctx, model->answers);
   dea_free(ctx, model->passes);
   dea_solid_destroy(ctx, model->solid);

@@ -3,36 +3,365 @@
 #include "model/solid/model3d/solid_model.h"
 #include "base/module.h"
 #include "model/make.h"
-#include "model/solid/model3d/motions.h"
+#include "model/solid/equilibrium/continuation.h"
+#include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/modes.h"
 #include "model/solid/model3d/solid_fields.h"
+#include "model/solid/model3d/solid_state.h"
 #include "model/solid/recovery/line_profile.h"
 #include "result/columns.h"
-#include "result/field_mesh.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
+static const double pi = 3.14159265358979323846;
+static const double path_step = 0.05; // of the square of the voltage, or of path_unit
+static const double path_step_most = 0.5;
+static const double path_unit = 2; // of the solid's length: displacement that counts as much as
+                                   // all of the voltage
+
+// Equilibria -------------------------------------------------------------------------------------
+
+static const struct dea_event *limit(const struct dea_model *model)
+{
+  return model->at.outcome.limited ? &model->at.outcome.limit : NULL;
+}
+
+static const struct dea_event *passed(const struct dea_model *model)
+{
+  return model->at.outcome.has_passed ? &model->at.outcome.passed : NULL;
+}
+
+static dea_status observe(struct dea_context *ctx, struct dea_model *model,
+                          struct dea_observation *out)
+{
+  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, out));
+  if (model->at.driven != NULL) {
+    dea_observer_set_currents(model->observer, dea_circuit_step_currents_A(model->at.driven));
+  }
+  return DEA_OK;
+}
+
+static dea_status indent(struct dea_context *ctx, struct dea_model *model,
+                         const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
+{
+  dea_solid_model_end_history(ctx, model);
+  if (model->indent == NULL) {
+    DEA_TRY(ctx, dea_indent_create(ctx, &model->mesh, model->solid, probe, &model->indent));
+  }
+  dea_status status = dea_indent_move(ctx, model->indent, model->solid, model->at.voltage_V,
+                                      depth_m, &model->at.report);
+  if (status != DEA_OK) {
+    char why[200];
+    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+    return dea_fail(ctx, status,
+                    "the probe stopped at a depth of %.4g mm on its way to %.4g mm (%s)",
+                    1e3 * model->indent->depth_m, 1e3 * depth_m, why);
+  }
+  return DEA_CHAIN(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
+}
+
+// Path -------------------------------------------------------------------------------------------
+
+/* A path by arc length, and where its points go. */
+struct path {
+  struct dea_model *model;
+  const struct dea_path_options *options;
+  struct dea_solid_continuation *steps;
+  double *weight, value; // [dofs] of a disc: it ends where weight . u comes to that from below
+  dea_point_sink points;
+  dea_event_sink events; // NULL: not wanted
+  void *user;
+};
+
+/* What the model says of a point of a path. */
+static dea_status path_point(struct dea_context *ctx, const struct path *path,
+                             const struct dea_continuation_point *at, struct dea_load_point *out)
+{
+  path->model->at.report.energy_J = at->energy_J;
+  path->model->at.report.unstable_modes = at->unstable_modes;
+  return DEA_CHAIN(ctx, dea_solid_model_report(ctx, path->model, at->voltage_V, out));
+}
+
+/* How far the solid is beyond the end, in its unit. */
+static double beyond(const struct path *path)
+{
+  const struct dea_solid *solid = path->model->solid;
+  double sum = -path->value;
+  if (path->weight == NULL) {
+    return -1;
+  }
+  for (size_t i = 0; i < solid->problem.dofs; i++) {
+    sum += path->weight[i] * solid->state.u[i];
+  }
+  return sum;
+}
+
+/* The limit point or bifurcation that the last step has passed, if it is not beyond the end; where
+ * it cannot be closed in on there is none. */
+static dea_status path_event(struct dea_context *ctx, const struct path *path,
+                             const struct dea_continuation_point *after)
+{
+  struct dea_continuation_point at = {0};
+  struct dea_event event;
+  dea_status status = dea_solid_continuation_locate(ctx, path->steps, &at);
+  if (dea_solid_may_shorten(status) || status == DEA_E_ARGUMENT) {
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, status);
+  if (beyond(path) > 0) {
+    return DEA_OK;
+  }
+  if (after->passed == DEA_CONTINUATION_BIFURCATION) {
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                           "model 3d: another branch crosses the path at %.4g kV; the path goes "
+                           "on with %d unstable modes",
+                           1e-3 * at.voltage_V, after->unstable_modes);
+  }
+  event.kind = after->slope < 0 ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK;
+  DEA_TRY(ctx, path_point(ctx, path, &at, &event.point));
+  return path->events != NULL ? path->events(path->user, &event) : DEA_OK;
+}
+
+/* A point of a path into its sink. */
+static dea_status add_point(struct dea_context *ctx, const struct path *path,
+                            const struct dea_continuation_point *at)
+{
+  struct dea_load_point point;
+  DEA_TRY(ctx, path_point(ctx, path, at, &point));
+  return DEA_CHAIN(ctx, path->points(path->user, &point));
+}
+
+/* The point where the step ends, or the path within it. */
+static dea_status solve_step(struct dea_context *ctx, const struct path *path,
+                             struct dea_continuation_point *at, bool *ended)
+{
+  const struct dea_continuation_point step = *at;
+  *ended = beyond(path) >= 0;
+  DEA_TRY(ctx, !*ended ? add_point(ctx, path, at) : DEA_OK);
+  if (step.passed != DEA_CONTINUATION_NOTHING) {
+    DEA_TRY(ctx, path_event(ctx, path, &step));
+  }
+  if (*ended) {
+    DEA_TRY(ctx, dea_solid_continuation_across(ctx, path->steps, path->weight, path->value, at));
+    DEA_TRY(ctx, add_point(ctx, path, at));
+  }
+  path->model->at.voltage_V = at->voltage_V;
+  *ended = *ended || at->voltage_V >= path->options->max_voltage_V;
+  return DEA_OK;
+}
+
+/* Step by step to one of the ends. */
+static dea_status follow_path(struct dea_context *ctx, const struct path *path)
+{
+  bool ended = false;
+  for (size_t i = 1; i < path->options->max_points && !ended; i++) {
+    struct dea_continuation_point at;
+    if (dea_interrupted_anywhere(ctx)) {
+      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the path");
+    }
+    dea_status status = dea_solid_continuation_step(ctx, path->steps, &at);
+    if (status == DEA_E_DOMAIN) { // 0 V, or the end of a law
+      dea_context_clear(ctx);
+      return DEA_OK;
+    }
+    DEA_TRY(ctx, status);
+    DEA_TRY(ctx, solve_step(ctx, path, &at, &ended));
+  }
+  return DEA_OK;
+}
+
+/* From where the solid is; it is then back there unless it stays at the end. */
+static dea_status go_along(struct dea_context *ctx, struct path *path)
+{
+  struct dea_model *model = path->model;
+  const struct dea_path_options *options = path->options;
+  const struct dea_continuation_options steps = {path_step, path_step_most,
+                                                 path_unit * model->solid->problem.length_m, false};
+  const struct dea_solid_report report = model->at.report;
+  const double voltage_V = model->at.voltage_V;
+  struct dea_load_point point;
+  struct dea_solid_saved_state from;
+  DEA_TRY(ctx, dea_solid_model_report(ctx, model, voltage_V, &point));
+  DEA_TRY(ctx, path->points(path->user, &point));
+  dea_status status = dea_solid_save_state(ctx, model->solid, &from);
+  if (status == DEA_OK) {
+    const double scale_V = isfinite(options->max_voltage_V)
+                               ? options->max_voltage_V
+                               : dea_step_outcome_longest_V(&model->at.outcome);
+    status = dea_solid_continuation_create(ctx, model->solid, scale_V, &steps, &path->steps);
+  }
+  status = status == DEA_OK ? follow_path(ctx, path) : status;
+  if (path->steps != NULL && !(status == DEA_OK && options->stays)) {
+    dea_solid_restore_state(model->solid, &from);
+    model->at.report = report;
+    model->at.voltage_V = voltage_V;
+  }
+  dea_solid_continuation_destroy(ctx, path->steps);
+  dea_solid_saved_state_free(&from);
+  return status;
+}
+
+/* Of a disc to a stretch of its electrode too. */
+static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
+                            const struct dea_path_options *options, dea_point_sink points,
+                            dea_event_sink events, void *user)
+{
+  struct path path = {
+      .model = model, .options = options, .points = points, .events = events, .user = user};
+  dea_solid_model_end_history(ctx, model);
+  if (model->disc) {
+    path.weight = dea_solid_alloc(ctx, model->solid->problem.dofs, sizeof *path.weight);
+    DEA_TRY_MEMORY(path.weight != NULL);
+    dea_observer_column_gradient(model->observer, model->solid,
+                                 dea_point_column_find("electrode_edge_u_m"), path.weight);
+    path.value =
+        (options->max_stretch / model->device->pre_stretch - 1) * model->device->electrode_radius_m;
+  }
+  const dea_status status = go_along(ctx, &path);
+  dea_free(ctx, path.weight);
+  return DEA_CHAIN(ctx, status);
+}
+
+// Other states -----------------------------------------------------------------------------------
+
+static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
+                         double *stiffness_N_per_m4)
+{
+  dea_solid_model_end_history(ctx, model);
+  dea_step_outcome_free(&model->at.outcome);
+  dea_free(ctx, model->at.soft);
+  model->at.soft = NULL;
+  model->at.soft_count = 0;
+  if (count == 0 || count > DEA_SOFT_MODES_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d soft modes can be asked for", DEA_SOFT_MODES_MAX);
+  }
+  model->at.soft =
+      dea_solid_alloc(ctx, count * 3 * model->mesh.grid->node_count, sizeof *model->at.soft);
+  DEA_TRY_MEMORY(model->at.soft != NULL);
+  DEA_TRY(ctx, dea_solid_modes_lowest(ctx, model->solid, DEA_MODES_BY_VOLUME, count,
+                                      stiffness_N_per_m4, model->at.soft));
+  model->at.soft_count = count;
+  return DEA_OK;
+}
+
+/* Share of a mode that a push keeps at a place: 1 in the middle of a sector, 1/2 on its border
+ * where the next one is left out. */
+static double kept_share(const struct dea_push *push, const double X[3])
+{
+  double fraction = 0;
+  if (push->parts < 2) {
+    return 1;
+  }
+  double at = atan2(X[1], X[0]) / (2 * pi) * push->parts;
+  for (int k = 0; k < push->parts; k++) {
+    double away = at - k - push->parts * round((at - k) / push->parts);
+    if ((push->in >> k & 1) != 0 && fabs(away) < 1) {
+      fraction += pow(cos(0.5 * pi * away), 2);
+    }
+  }
+  return fraction;
+}
+
+/* The push as displacements [node_count][3] in the place of the mode or fold. */
+static void set_push(const struct dea_grid *grid, const struct dea_push *push, double *out)
+{
+  double most = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    double fraction = kept_share(push, grid->X + 3 * n);
+    for (size_t i = 3 * n; i < 3 * n + 3; i++) {
+      out[i] = fraction * out[i];
+      most = fmax(most, fabs(out[i]));
+    }
+  }
+  double scale =
+      push->kind == DEA_PUSH_MODE && most > 0 ? push->side * push->amplitude_m / most : 1;
+  for (size_t i = 0; i < 3 * grid->node_count; i++) {
+    out[i] *= scale;
+  }
+}
+
+static dea_status push(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_push *perturbation, struct dea_load_point *out, bool *found)
+{
+  const struct dea_grid *grid = model->mesh.grid;
+  const bool folds = perturbation->kind == DEA_PUSH_FOLD;
+  const size_t moves = 3 * grid->node_count;
+  *found = model->at.as_made = false;
+  if ((!folds && perturbation->mode >= model->at.soft_count) ||
+      perturbation->parts > DEA_PUSH_PARTS_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a push along mode %zu of %zu soft ones, in %d parts",
+                    perturbation->mode + 1, model->at.soft_count, perturbation->parts);
+  }
+  double *displacement = dea_solid_alloc(ctx, moves, sizeof *displacement);
+  DEA_TRY_MEMORY(displacement != NULL);
+  if (folds) {
+    dea_buckling_branch_fold(model->solid, grid, &model->band, perturbation->side, displacement);
+  } else {
+    memcpy(displacement, model->at.soft + perturbation->mode * moves, moves * sizeof *displacement);
+  }
+  set_push(grid, perturbation, displacement);
+  dea_status status =
+      dea_solid_perturb(ctx, model->solid, displacement, NULL, NULL, &model->at.report, found);
+  dea_free(ctx, displacement);
+  DEA_TRY(ctx, status);
+  return DEA_CHAIN(ctx,
+                   *found ? dea_solid_model_report(ctx, model, model->at.voltage_V, out) : DEA_OK);
+}
 
 // In time ----------------------------------------------------------------------------------------
+
+static dea_status report_time(struct dea_context *ctx, struct dea_model *model,
+                              struct dea_load_point *out)
+{
+  model->at.voltage_V = dea_solid_voltage(model->solid);
+  DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
+  dea_circuit_step_point(model->at.driven, out);
+  out->stored_energy_J += model->at.stored_J;
+  out->energy_J = out->stored_energy_J - dea_circuit_step_charged_J(model->at.driven);
+  return DEA_OK;
+}
 
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *time, struct dea_load_point *out)
 {
-  const struct dea_driven_solid driven = {
-      .solid = model->solid,
-      .branches = model->plies.branches,
-      .leakage_per_s = model->plies.leakage_per_s,
-      .mesh = &model->mesh,
-      .channels = !model->disc || dea_layout_has_sheet_resistance(model->layout),
-      .copies = model->copies,
-      .thickness_m = model->layout->plies[model->plies.film].thickness_m};
   DEA_TRY(ctx, time->inertia ? dea_solid_check_densities(ctx, model) : DEA_OK);
-  return DEA_CHAIN(ctx, dea_solver_state_begin(ctx, &model->at, &driven, time, out));
+  dea_solid_model_end_history(ctx, model);
+  DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
+  DEA_TRY(ctx, dea_circuit_step_create(ctx, model, time, &model->at.driven));
+  model->at.stored_J = out->energy_J + dea_circuit_step_charged_J(model->at.driven);
+  return DEA_CHAIN(ctx, report_time(ctx, model, out));
+}
+
+/* A control may move in a step. */
+static dea_status advance(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  DEA_TRY(ctx, step->control != NULL
+                   ? dea_solid_model_set_control(ctx, model, step->control, step->value)
+                   : DEA_OK);
+  if (model->at.driven == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a history in time has to begin first");
+  }
+  if (dea_interrupted_anywhere(ctx)) {
+    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted in a step in time");
+  }
+  DEA_TRY(ctx, dea_circuit_step_advance(ctx, model->at.driven, step, &model->at.report, error));
+  return DEA_CHAIN(ctx, report_time(ctx, model, out));
+}
+
+static void accept(struct dea_model *model)
+{
+  dea_circuit_step_accept(model->at.driven);
 }
 
 // Saved states -----------------------------------------------------------------------------------
+
+enum { VOLTAGE, LEFT_A_STATE, NUMBERS };
+static const char own_name[] = "model";
 
 static void mark(struct dea_model_marks *marks, const double *values, size_t count)
 {
@@ -88,7 +417,11 @@ static void mark_layout(const struct dea_layout *l, struct dea_model_marks *mark
 
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
-  DEA_TRY(ctx, dea_solver_state_save(ctx, &model->at, out));
+  const double own[NUMBERS] = {
+      [VOLTAGE] = model->at.voltage_V, [LEFT_A_STATE] = model->at.left_a_state ? 1 : 0};
+  *out = (struct dea_state){0};
+  DEA_TRY(ctx, dea_solid_save(ctx, model->solid, out));
+  DEA_TRY(ctx, dea_state_add_numbers(ctx, out, own_name, own, NUMBERS));
   if (model->marks.out == NULL) {
     struct dea_model_marks counted = {.out = NULL};
     mark_layout(model->layout, &counted);
@@ -100,134 +433,21 @@ static dea_status save(struct dea_context *ctx, struct dea_model *model, struct 
                                            model->marks.count * sizeof *model->marks.out));
 }
 
-static dea_status observe(struct dea_context *ctx, struct dea_model *model,
-                          struct dea_observation *out)
+static dea_status load(struct dea_context *ctx, struct dea_model *model,
+                       const struct dea_state *state)
 {
-  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, out));
-  if (model->at.driven != NULL) {
-    dea_observer_set_currents(model->observer, dea_circuit_step_currents_A(model->at.driven));
+  const double *own = dea_state_find(state, own_name, NUMBERS);
+  if (own == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of model 3d");
   }
+  model->at.as_made = false;
+  DEA_TRY(ctx, dea_solid_load(ctx, model->solid, state));
+  model->at.voltage_V = own[VOLTAGE];
+  model->at.left_a_state = own[LEFT_A_STATE] != 0;
   return DEA_OK;
 }
 
-/* What small motions are of. */
-static dea_status find_motions(struct dea_context *ctx, const struct dea_model *model,
-                               struct dea_motions *out)
-{
-  *out = (struct dea_motions){.solid = model->solid,
-                              .grid = model->mesh.grid,
-                              .observer = model->observer,
-                              .branches = model->plies.branches,
-                              .part_material_count = model->layout->ply_count};
-  DEA_TRY(ctx, dea_solid_check_densities(ctx, model));
-  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                         "model 3d: frequencies are those in vacuo; the air that moves with a film "
-                         "makes it slower, a thin one by about a fifth (model reduced has it: "
-                         "compute.reduced.air)%s%s",
-                         model->mesh.sector.fold == 0
-                             ? ""
-                             : ". A sector has only those modes that have its symmetry "
-                               "(compute.solid.domain: ",
-                         model->mesh.sector.fold == 0 ? ""
-                         : model->disc                ? "disc has all)"
-                                                      : "whole has all)");
-}
-
-/* Monitors of the answer at one frequency, per volt. */
-static dea_status get_answer(struct dea_context *ctx, void *user, size_t i, const double *real,
-                             const double *imaginary)
-{
-  const struct dea_model *model = user;
-  size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
-  const double *parts[2] = {real, imaginary};
-  for (int p = 0; p < 2; p++) {
-    DEA_TRY(ctx, dea_observer_differentiate(ctx, model->observer, model->solid, parts[p],
-                                            model->answer));
-    for (size_t k = 0; k < width; k++) {
-      model->answers[2 * (i * width + k) + (size_t)p] = model->answer[k];
-    }
-  }
-  return DEA_OK;
-}
-
-static dea_status respond(struct dea_context *ctx, struct dea_model *model,
-                          const struct dea_load_point *at,
-                          const struct dea_ac_excitation *excitation, const double *frequency_Hz,
-                          size_t count, struct dea_load_point *points)
-{
-  struct dea_motions motions;
-  size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
-  double *answers = dea_resize(ctx, model->answers, 2 * count * width + 1, sizeof *answers);
-  model->answers = answers != NULL ? answers : model->answers;
-  DEA_TRY_MEMORY(!dea_solid_allreduce_any(answers == NULL));
-  if (dea_layout_has_sheet_resistance(model->layout)) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "an excitation by electrodes with a sheet resistance is known in "
-                    "time only (compute.transient with a sine); without sheet_resistance: that of "
-                    "ideal electrodes");
-  }
-  DEA_TRY(ctx, find_motions(ctx, model, &motions));
-  motions.take = width > 0 ? get_answer : NULL;
-  motions.user = model;
-  dea_solid_liquids_stiffen(model, true);
-  const dea_status status =
-      dea_motions_respond(ctx, &motions, at, excitation, frequency_Hz, count, points);
-  dea_solid_liquids_stiffen(model, false);
-  DEA_TRY(ctx, status);
-  for (size_t i = 0; i < 2 * count * width; i++) {
-    model->answers[i] *= excitation->amplitude_V;
-  }
-  return DEA_OK;
-}
-
-static const double *answers(const struct dea_model *model)
-{
-  return model->answers;
-}
-
-/* All copies of the sector in the place of *mesh; that of a disc says how it is to be unfolded. */
-static dea_status build_whole(struct dea_context *ctx, const struct dea_model *model,
-                              struct dea_field_mesh **mesh)
-{
-  const struct dea_layout_sector *sector = &model->mesh.sector;
-  struct dea_field_mesh *part = *mesh, *whole = NULL;
-  if (model->disc) {
-    part->fold = sector->fold;
-    part->symmetry_angle = sector->angle_rad;
-    part->fibres = model->device->fibre_count;
-  }
-  if (sector->fold == 0 || model->disc) {
-    return DEA_OK;
-  }
-  part->fold = sector->fold; // about the z axis, where the centre is for a moment
-  part->symmetry_angle = sector->angle_rad;
-  for (size_t i = 0; i < 2 * part->point_count; i++) {
-    part->X[3 * (i / 2) + i % 2] -= sector->centre_m[i % 2];
-  }
-  dea_status status = dea_field_mesh_whole(ctx, part, &whole);
-  dea_field_mesh_destroy(ctx, part);
-  *mesh = whole;
-  DEA_TRY(ctx, status);
-  for (size_t i = 0; i < 2 * whole->point_count; i++) {
-    whole->X[3 * (i / 2) + i % 2] += sector->centre_m[i % 2];
-  }
-  return DEA_OK;
-}
-
-static dea_status modes(struct dea_context *ctx, struct dea_model *model,
-                        const struct dea_load_point *at, size_t count,
-                        struct dea_load_point *points, struct dea_field_mesh **shapes)
-{
-  struct dea_motions motions;
-  *shapes = NULL;
-  DEA_TRY(ctx, find_motions(ctx, model, &motions));
-  dea_solid_liquids_stiffen(model, true);
-  const dea_status status =
-      dea_motions_modes(ctx, &motions, (int)model->plies.film, at, count, points, shapes);
-  dea_solid_liquids_stiffen(model, false);
-  DEA_TRY(ctx, status);
-  return DEA_CHAIN(ctx, build_whole(ctx, model, shapes));
-}
+// Fields -----------------------------------------------------------------------------------------
 
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
@@ -235,7 +455,7 @@ static dea_status fields(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
                    ? dea_solid_volume(ctx, model->solid, out)
                    : dea_solid_surface(ctx, model->solid, (int)model->plies.film, out));
-  return DEA_CHAIN(ctx, build_whole(ctx, model, out));
+  return DEA_CHAIN(ctx, dea_solid_model_whole(ctx, model, out));
 }
 
 /* Of a disc: along the first fibre's axis and halfway between it and the next. Of others: none. */
@@ -256,59 +476,6 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
   return DEA_CHAIN(ctx, status);
 }
 
-// Other ways to a state ---------------------------------------------------------------------------
-
-static dea_status indent(struct dea_context *ctx, struct dea_model *model,
-                         const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
-{
-  dea_solver_state_end_history(ctx, &model->at);
-  if (model->indent == NULL) {
-    DEA_TRY(ctx, dea_indent_create(ctx, &model->mesh, model->solid, probe, &model->indent));
-  }
-  dea_status status = dea_indent_move(ctx, model->indent, model->solid, model->at.voltage_V,
-                                      depth_m, &model->at.report);
-  if (status != DEA_OK) {
-    char why[200];
-    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-    return dea_fail(ctx, status,
-                    "the probe stopped at a depth of %.4g mm on its way to %.4g mm (%s)",
-                    1e3 * model->indent->depth_m, 1e3 * depth_m, why);
-  }
-  return DEA_CHAIN(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
-}
-
-/* Of a disc to a stretch of its electrode too. */
-static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
-                            const struct dea_path_options *options, dea_point_sink points,
-                            dea_event_sink events, void *user)
-{
-  struct dea_solver_state_end end = {0};
-  double *weight = NULL;
-  if (model->disc) {
-    weight = dea_solid_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
-    DEA_TRY_MEMORY(weight != NULL);
-    dea_observer_column_gradient(model->observer, model->solid,
-                                 dea_point_column_find("electrode_edge_u_m"), weight);
-    end.weight = weight;
-    end.value =
-        (options->max_stretch / model->device->pre_stretch - 1) * model->device->electrode_radius_m;
-  }
-  dea_status status = dea_solver_state_path(ctx, &model->at, options, &end, points, events, user);
-  dea_free(ctx, weight);
-  return DEA_CHAIN(ctx, status);
-}
-
-static dea_status push(struct dea_context *ctx, struct dea_model *model,
-                       const struct dea_push *perturbation, struct dea_load_point *out, bool *found)
-{
-  double *fold = dea_solid_alloc(ctx, 3 * model->mesh.grid->node_count, sizeof *fold);
-  DEA_TRY_MEMORY(fold != NULL);
-  dea_buckling_branch_fold(model->solid, model->mesh.grid, &model->band, perturbation->side, fold);
-  dea_status status = dea_solver_state_push(ctx, &model->at, perturbation, fold, out, found);
-  dea_free(ctx, fold);
-  return DEA_CHAIN(ctx, status);
-}
-
 static void size(const struct dea_model *model, struct dea_model_size *out)
 {
   *out = (struct dea_model_size){.elements = model->mesh.grid->element_count,
@@ -322,215 +489,9 @@ static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t
   return model->passes;
 }
 
-// Estimated errors -------------------------------------------------------------------------------
-
-/* Whether the mesh is all that a point's error is of; a membrane has one too. */
-static bool has_error(const struct dea_load_point *point)
+static const double *answers(const struct dea_model *model)
 {
-  struct dea_load_point solid = *point;
-  solid.own_flags &= ~(1u << DEA_FLAG_PREVIEW);
-  return dea_load_point_trusted(&solid);
-}
-
-/* Of the main motion of a monitor at a point without a doubt; otherwise, and of a body that is held
- * along it, NAN. part: of each element, may be NULL. */
-static dea_status find_error(struct dea_context *ctx, struct dea_model *model, size_t monitor,
-                             const double *values, double *weight, double *error, double *part)
-{
-  const struct dea_layout_monitor *m = &model->layout->monitors[monitor];
-  enum dea_observed motion = dea_observed_main(values);
-  *error = NAN;
-  if (m->kind == DEA_MONITOR_BODY) {
-    size_t node = model->bodies[m->body].node;
-    if ((model->solid->problem.held[3 * node + (size_t)motion]) != 0) {
-      return DEA_OK;
-    }
-  }
-  dea_observer_gradient(model->observer, model->solid, monitor, motion, weight);
-  struct dea_solid_quantity one = {.weight = weight};
-  one.probe_count = dea_observer_probes(model->observer, model->solid, monitor, motion, one.probes);
-  dea_status status = dea_solid_errors(ctx, model->solid, &one, 1, error, part);
-  return status == DEA_E_DOMAIN ? DEA_OK : status; // at the end of a law none is known
-}
-
-static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
-{
-  struct dea_load_point point;
-  struct dea_observation seen;
-  DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, &point));
-  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
-  for (size_t i = 0; i < seen.monitor_count; i++) {
-    error[i] = NAN;
-  }
-  if (!has_error(&point)) {
-    return DEA_OK;
-  }
-  double *weight = dea_solid_alloc(ctx, 3 * model->mesh.grid->node_count, sizeof *weight);
-  dea_status status = weight == NULL ? DEA_E_MEMORY : DEA_OK;
-  for (size_t i = 0; i < seen.monitor_count && status == DEA_OK; i++) {
-    status = find_error(ctx, model, i, seen.monitor[i], weight, &error[i], NULL);
-  }
-  dea_free(ctx, weight);
-  return status;
-}
-
-// Adaptive refinement ----------------------------------------------------------------------------
-
-/* One mesh after the other, each finer where the error of the last one came from. */
-struct adaptation {
-  const struct dea_device *device;
-  struct dea_model_settings settings; // with the sizes of the present mesh
-  size_t monitor;                     // of the layout
-  struct dea_adapt_pass *pass;        // [settings.adapt.passes], owned
-  size_t count;
-  double (*now)[3], (*next)[3]; // sizes of this mesh and the next one, owned
-  size_t next_count;
-};
-
-static dea_status build(struct dea_context *ctx, const struct dea_device *device,
-                        const struct dea_model_settings *settings, struct dea_model **out)
-{
-  DEA_TRY(ctx, dea_model_build(ctx, sizeof **out, device, settings, dea_solid_model_prepare,
-                               dea_solid_model_destroy, out));
-  struct dea_model *model = *out;
-  const struct dea_layout_ply *film = &model->layout->plies[model->plies.film];
-  model->at.outcome.owner = (struct dea_step_outcome_owner){
-      .solid = model->solid,
-      .films = model->plies.films,
-      .model = model,
-      .point = dea_solid_model_report,
-      .arrived = dea_solid_model_arrived,
-      .step_V = field_step_V_per_m * model->plies.thinnest_m,
-      .tension_scale_N_per_m =
-          dea_part_material_modulus(&model->plies.part_materials[model->plies.film]) *
-          film->thickness_m,
-      .refinement = model->settings.refinement,
-      .membrane = model->mesh.membrane};
-  return DEA_OK;
-}
-
-/* The error on a mesh at the voltage, and the sizes of the next one. */
-static dea_status estimate_mesh_error(struct dea_context *ctx, struct adaptation *a,
-                                      struct dea_model *model, struct dea_adapt_pass *pass)
-{
-  struct dea_load_point point;
-  struct dea_observation seen;
-  const struct dea_grid *grid = model->mesh.grid;
-  DEA_TRY(ctx, dea_solver_state_solve(ctx, model, a->settings.adapt.voltage_V, &point));
-  DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
-  const double *values = seen.monitor[a->monitor];
-  enum dea_observed motion = dea_observed_main(values);
-  bool ratio = motion == DEA_OBSERVED_STRETCH || motion == DEA_OBSERVED_AREA_STRETCH;
-  *pass = (struct dea_adapt_pass){.elements = grid->element_count,
-                                  .unknowns = 3 * grid->node_count,
-                                  .value = values[motion],
-                                  .error = NAN};
-  double *weight = dea_alloc(ctx, 3 * grid->node_count, sizeof *weight);
-  double *part = dea_alloc(ctx, grid->element_count, sizeof *part);
-  double(*at)[3] = dea_resize(ctx, a->next, model->mesh.plane->quad_count, sizeof *at);
-  a->next = at != NULL ? at : a->next;
-  dea_status status =
-      dea_solid_allreduce_any(weight == NULL || part == NULL || at == NULL) ? DEA_E_MEMORY : DEA_OK;
-  if (status == DEA_OK && has_error(&point)) {
-    status = find_error(ctx, model, a->monitor, values, weight, &pass->error, part);
-  }
-  double wanted = a->settings.adapt.tolerance * fabs(pass->value - (ratio ? 1 : 0));
-  if (status == DEA_OK && wanted > 0 && !isnan(pass->error)) {
-    pass->within = pass->error <= wanted;
-    a->next_count = model->mesh.plane->quad_count;
-    status = dea_adapt_sizes(ctx, &model->mesh, part, wanted, a->next);
-  } else if (status == DEA_OK) {
-    pass->error = NAN; // of what does not move, too
-  }
-  dea_free(ctx, part);
-  dea_free(ctx, weight);
-  return status;
-}
-
-static dea_status find_monitor(struct dea_context *ctx, struct adaptation *a)
-{
-  const struct dea_layout *l = a->device->layout;
-  const char *name = a->settings.adapt.monitor;
-  while (a->monitor < l->monitor_count && strcmp(l->monitors[a->monitor].name, name) != 0) {
-    a->monitor++;
-  }
-  return a->monitor < l->monitor_count
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_DESIGN, "compute.solid.adapt: there is no monitor '%s'", name);
-}
-
-/* Where the error of a mesh is not known the last one is as good as any. */
-static dea_status report_end(struct dea_context *ctx, const struct adaptation *a)
-{
-  const struct dea_adapt_pass *last = &a->pass[a->count - 1];
-  if (!isnan(last->error) && last->within) {
-    return DEA_OK;
-  }
-  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
-                         isnan(last->error)
-                             ? "model 3d: no error of the monitor '%s' is known at %.4g kV: its "
-                               "mesh stays as it is"
-                             : "model 3d: the error of the monitor '%s' at %.4g kV is not yet that "
-                               "of compute.solid.adapt.tolerance (compute.solid.adapt.passes)",
-                         a->settings.adapt.monitor, 1e-3 * a->settings.adapt.voltage_V);
-}
-
-/* Another model, on a mesh of the present sizes, in the place of *model. */
-static dea_status build_anew(struct dea_context *ctx, const struct adaptation *a,
-                             struct dea_model **model)
-{
-  dea_solid_model_destroy(ctx, *model);
-  *model = NULL;
-  return DEA_CHAIN(ctx, build(ctx, a->device, &a->settings, model));
-}
-
-/* To the mesh that is exact enough; *model: on it, at rest. */
-static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct dea_model **model)
-{
-  size_t most = (size_t)a->settings.adapt.passes;
-  a->pass = dea_solid_alloc(ctx, most, sizeof *a->pass);
-  DEA_TRY_MEMORY(a->pass != NULL);
-  for (bool on = true; on;) {
-    struct dea_adapt_pass *pass = &a->pass[a->count];
-    DEA_TRY(ctx, estimate_mesh_error(ctx, a, *model, pass));
-    a->count++;
-    on = a->count < most && !pass->within && !isnan(pass->error);
-    if (on) {
-      double(*sizes)[3] = a->now;
-      a->now = a->next;
-      a->next = sizes;
-      a->settings.sizes = (const double(*)[3])a->now;
-      a->settings.size_count = a->next_count;
-    }
-    DEA_TRY(ctx, build_anew(ctx, a, model)); // the last one too: to be at rest
-  }
-  return DEA_CHAIN(ctx, report_end(ctx, a));
-}
-
-static dea_status create(struct dea_context *ctx, const struct dea_device *device,
-                         const struct dea_model_settings *settings, struct dea_model **out)
-{
-  static const struct dea_model_settings usual = {0};
-  struct adaptation a = {.device = device, .settings = settings != NULL ? *settings : usual};
-  bool asked = a.settings.adapt.monitor != NULL;
-  *out = NULL;
-  dea_status status = asked ? find_monitor(ctx, &a) : DEA_OK;
-  status = status == DEA_OK ? build(ctx, device, &a.settings, out) : status;
-  if (asked && status == DEA_OK) {
-    status = adapt(ctx, &a, out);
-  }
-  if (status == DEA_OK) {
-    (*out)->passes = a.pass;
-    (*out)->pass_count = a.count;
-    a.pass = NULL;
-  } else if (*out != NULL) {
-    dea_solid_model_destroy(ctx, *out);
-    *out = NULL;
-  }
-  dea_free(ctx, a.pass);
-  dea_free(ctx, a.now);
-  dea_free(ctx, a.next);
-  return DEA_CHAIN(ctx, status);
+  return model->answers;
 }
 
 extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_module;
@@ -540,30 +501,30 @@ const struct dea_model_type dea_solid_module = {
     .long_name = "3D solid",
     .any_layout = true,
     .libraries = dea_solid_libraries,
-    .create = create,
+    .create = dea_solid_model_create,
     .destroy = dea_solid_model_destroy,
-    .solve = dea_solver_state_solve,
+    .solve = dea_solid_model_solve,
     .gradient = dea_solid_model_gradient,
-    .limit = dea_solver_state_limit,
-    .passed = dea_solver_state_passed,
+    .limit = limit,
+    .passed = passed,
     .observe = observe,
-    .errors = errors,
+    .errors = dea_solid_model_errors,
     .passes = passes,
     .indent = indent,
     .move = dea_solid_model_move,
     .compliance = dea_solid_model_compliance,
     .long_path = long_path,
-    .soften = dea_solver_state_soften,
+    .soften = soften,
     .push = push,
-    .modes = modes,
-    .respond = respond,
+    .modes = dea_solid_model_modes,
+    .respond = dea_solid_model_respond,
     .answers = answers,
     .profile = profile,
     .fields = fields,
     .save = save,
-    .load = dea_solver_state_load,
+    .load = load,
     .begin = begin,
-    .advance = dea_solid_model_advance,
-    .accept = dea_solver_state_accept,
+    .advance = advance,
+    .accept = accept,
     .size = size,
 };

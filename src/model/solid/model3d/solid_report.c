@@ -62,10 +62,9 @@ void dea_solid_model_describe(const struct dea_model *model, double voltage_V,
   }
 }
 
-dea_status dea_solid_model_report(struct dea_context *ctx, void *self, double voltage_V,
-                                  struct dea_load_point *out)
+dea_status dea_solid_model_report(struct dea_context *ctx, struct dea_model *model,
+                                  double voltage_V, struct dea_load_point *out)
 {
-  struct dea_model *model = self;
   struct dea_solid_extremes extremes;
   double capacitance_F;
   const bool charged =
@@ -146,9 +145,9 @@ static dea_status set_side(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
-dea_status dea_solid_model_arrived(struct dea_context *ctx, void *self, double voltage_V)
+dea_status dea_solid_model_arrived(struct dea_context *ctx, struct dea_model *model,
+                                   double voltage_V)
 {
-  struct dea_model *model = self;
   model->at.voltage_V = voltage_V;
   dea_solid_model_note_states(model, model->at.report.snapped);
   DEA_TRY(ctx, dea_solid_contacts_check(ctx, model));

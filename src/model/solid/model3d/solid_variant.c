@@ -1,12 +1,107 @@
 /* Slopes of the model "3d" by changed devices (docs/theory/gradients.md). */
 #include "model/solid/actuator/disc_mesh.h"
-#include "model/solid/assembly/charge_control.h"
+#include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/model3d/solid_model.h"
 #include "result/columns.h"
 
 #include <math.h>
 #include <string.h>
+
+// The film ----------------------------------------------------------------------------------------
+
+static const char *const extremes[DEA_FILM_EXTREMES] = {
+    [DEA_FILM_FIELD] = "true_field_V_per_m",
+    [DEA_FILM_MARGIN] = "breakdown_margin",
+    [DEA_FILM_TENSION] = "min_tension_N_per_m",
+};
+
+static void find_places(const struct dea_model *model, struct dea_gradient_places *out)
+{
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
+    out->known[i] = dea_solid_extreme_find(model->solid, model->plies.films,
+                                           (enum dea_film_extreme)i, &out->at[i]);
+  }
+}
+
+/* dea_variant_slope for extremes of the film, capacitance, energy and nominal field, and the
+ * voltage, which is no unknown; *known false for every other column. */
+static dea_status film_slope(struct dea_context *ctx, const struct dea_model *model, int column,
+                             double *out, double *pressures, bool *known)
+{
+  const struct dea_gradient_places *places = &model->variant->places;
+  const char *key = dea_point_columns[column].key;
+  int extreme = 0;
+  while (extreme < DEA_FILM_EXTREMES && strcmp(key, extremes[extreme]) != 0) {
+    extreme++;
+  }
+  if (extreme < DEA_FILM_EXTREMES) {
+    *known = places->known[extreme];
+    if (*known) {
+      dea_solid_extreme_slope(model->solid, model->plies.films, (enum dea_film_extreme)extreme,
+                              &places->at[extreme], out, pressures);
+    }
+  } else if (strcmp(key, "capacitance_F") == 0) {
+    DEA_TRY(ctx, dea_solid_capacitance_slope(ctx, model->solid, out, known));
+    for (size_t i = 0; i < model->solid->problem.dofs; i++) {
+      out[i] *= model->copies;
+    }
+  } else { // forces of the energy are 0
+    *known = strcmp(key, "energy_J") == 0 || strcmp(key, "nominal_field_V_per_m") == 0 ||
+             strcmp(key, "voltage_V") == 0;
+  }
+  return DEA_OK;
+}
+
+static bool asks(const struct dea_gradient_request *ask, const char *key)
+{
+  for (size_t i = 0; i < ask->column_count; i++) {
+    if (strcmp(dea_point_columns[ask->columns[i]].key, key) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Extremes and, where it is asked for, capacitance of the film as it is now. */
+static dea_status film_at(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
+                          struct dea_load_point *out)
+{
+  const struct dea_gradient_places *places = &model->variant->places;
+  double *const values[DEA_FILM_EXTREMES] = {
+      [DEA_FILM_FIELD] = &out->true_field_V_per_m,
+      [DEA_FILM_MARGIN] = &out->breakdown_margin,
+      [DEA_FILM_TENSION] = &out->min_tension_N_per_m,
+  };
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
+    if (places->known[i]) {
+      *values[i] = dea_solid_extreme_at(model->solid, model->plies.films, (enum dea_film_extreme)i,
+                                        &places->at[i], voltage_V);
+    }
+  }
+  if (asks(model->variant->ask, "capacitance_F")) {
+    DEA_TRY(ctx, dea_solid_capacitance_wide(ctx, model->solid, &out->capacitance_F));
+    out->capacitance_F *= model->copies;
+  }
+  return DEA_OK;
+}
+
+/* Energy without voltage at the unknowns of rest, u [dofs], followers of bodies are moved. Left as
+ * it is where no energy is asked for. */
+static dea_status find_rest_energy(struct dea_model *model, double *u)
+{
+  struct dea_solid *s = model->solid;
+  double *own = s->state.multiplier;
+  if (!asks(model->variant->ask, "energy_J")) {
+    return DEA_OK;
+  }
+  s->state.multiplier = model->rest + s->problem.dofs;
+  dea_status status = dea_solid_energy(s, u, 0, &model->at.rest_energy_J);
+  s->state.multiplier = own;
+  return status;
+}
+
+// Devices -----------------------------------------------------------------------------------------
 
 static bool same_hold(const struct dea_layout_support *a, const struct dea_layout_support *b)
 {
@@ -183,10 +278,9 @@ static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-static dea_status enter(struct dea_context *ctx, void *self, const struct dea_design_change *change,
-                        int side)
+dea_status dea_variant_enter(struct dea_context *ctx, struct dea_model *model,
+                             const struct dea_design_change *change, int side)
 {
-  struct dea_model *model = self;
   const struct dea_device *device = change->device[side];
   if (device == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "there is no device with a number a little beside it");
@@ -196,14 +290,13 @@ static dea_status enter(struct dea_context *ctx, void *self, const struct dea_de
                    model->indent != NULL ? enter_tip(ctx, model, change->pressed[side]) : DEA_OK);
 }
 
-static dea_status hold_tip(struct dea_context *ctx, void *self)
+dea_status dea_variant_hold_tip(struct dea_context *ctx, struct dea_model *model)
 {
-  return enter_tip(ctx, self, NULL);
+  return enter_tip(ctx, model, NULL);
 }
 
-static void leave(struct dea_context *ctx, void *self)
+void dea_variant_leave(struct dea_context *ctx, struct dea_model *model)
 {
-  struct dea_model *model = self;
   struct dea_model_variant *v = model->variant;
   struct dea_solid *s = v->own.solid;
   dea_indent_end_variant(ctx, s, v->own.indent, v->indent);
@@ -225,18 +318,10 @@ static void leave(struct dea_context *ctx, void *self)
   memcpy(s->state.own_V, v->own_V, (s->problem.channel_count + 1) * sizeof *s->state.own_V);
 }
 
-static struct dea_gradient_film film_of(const struct dea_model *model)
+dea_status dea_variant_slope(struct dea_context *ctx, struct dea_model *model, int column,
+                             double *out, double *pressures, bool *known)
 {
-  return (struct dea_gradient_film){
-      .solid = model->solid, .films = model->plies.films, .copies = model->copies};
-}
-
-static dea_status slope(struct dea_context *ctx, void *self, int column, double *out,
-                        double *pressures, bool *known)
-{
-  struct dea_model *model = self;
   const char *key = dea_point_columns[column].key;
-  const struct dea_gradient_film film = film_of(model);
   *known = true;
   if (strcmp(key, "highest_z_m") == 0 || strcmp(key, "lowest_z_m") == 0) {
     const struct dea_model_place place =
@@ -249,28 +334,23 @@ static dea_status slope(struct dea_context *ctx, void *self, int column, double 
   } else if (strcmp(key, "tip_depth_m") == 0) { // of no unknown
     *known = model->indent != NULL;
   } else if (!dea_observer_column_gradient(model->observer, model->solid, column, out)) {
-    DEA_TRY(ctx, dea_gradient_film_slope(ctx, &film, &model->variant->places, column, out,
-                                         pressures, known));
+    DEA_TRY(ctx, film_slope(ctx, model, column, out, pressures, known));
   }
   return DEA_OK;
 }
 
-static dea_status monitor_slope(struct dea_context *ctx, void *self, size_t i, double *out,
-                                double *direction, bool *known)
+bool dea_variant_monitor_slope(const struct dea_model *model, size_t i, double *out,
+                               double *direction)
 {
-  struct dea_model *model = self;
   const struct dea_model_variant *v = model->variant;
-  (void)ctx;
-  *known = dea_observer_gradient(model->observer, model->solid, v->ask->monitors[i], v->motion[i],
-                                 out) ||
-           dea_observer_force_direction(model->observer, model->solid, v->ask->monitors[i],
-                                        v->motion[i], direction);
-  return DEA_OK;
+  return dea_observer_gradient(model->observer, model->solid, v->ask->monitors[i], v->motion[i],
+                               out) ||
+         dea_observer_force_direction(model->observer, model->solid, v->ask->monitors[i],
+                                      v->motion[i], direction);
 }
 
-static dea_status get_monitors(struct dea_context *ctx, void *self, double *out)
+dea_status dea_variant_monitors(struct dea_context *ctx, struct dea_model *model, double *out)
 {
-  struct dea_model *model = self;
   const struct dea_model_variant *v = model->variant;
   struct dea_observation seen;
   DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
@@ -302,12 +382,10 @@ static void load_as_at_rest(const struct dea_model *model, bool at_rest)
   }
 }
 
-static dea_status variant_point(struct dea_context *ctx, void *self, double voltage_V,
-                                double energy_J, struct dea_load_point *out)
+dea_status dea_variant_point(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                             double energy_J, struct dea_load_point *out)
 {
-  struct dea_model *model = self;
   const struct dea_model_variant *v = model->variant;
-  const struct dea_gradient_film film = film_of(model);
   double *rest = v->rest; // room: followers of bodies are moved
   for (size_t i = 0; i < model->solid->problem.dofs; i++) {
     rest[i] = model->rest[i] + v->shift[i];
@@ -316,9 +394,7 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
   load_as_at_rest(model, true);
   const size_t loads = model->solid->problem.load_count;
   model->solid->problem.load_count -= model->indent != NULL ? 1 : 0; // it is not there at rest
-  dea_status status =
-      dea_gradient_rest_energy(model->solid, v->ask, rest, model->rest + model->solid->problem.dofs,
-                               &model->at.rest_energy_J);
+  dea_status status = find_rest_energy(model, rest);
   model->solid->problem.load_count = loads;
   load_as_at_rest(model, false);
   bool kept = model->layout->contact_count == 0; // pressures at rest
@@ -327,8 +403,7 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
   }
   model->at.rest_energy_J = kept ? model->at.rest_energy_J : NAN;
   dea_solid_model_describe(model, voltage_V, out);
-  status = status == DEA_OK ? dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out)
-                            : status;
+  status = status == DEA_OK ? film_at(ctx, model, voltage_V, out) : status;
   return status == DEA_OK
              ? DEA_OK
              : dea_fail(ctx, status, "a changed device cannot be evaluated at %g V", voltage_V);
@@ -349,60 +424,27 @@ static dea_status find_asked_motions(struct dea_context *ctx, struct dea_model *
   return DEA_OK;
 }
 
-static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model,
-                                const struct dea_gradient_request *ask, double *out)
+dea_status dea_variant_begin(struct dea_context *ctx, struct dea_model *model,
+                             const struct dea_gradient_request *ask, struct dea_arena *memory)
 {
-  struct dea_model_variant *v = model->variant;
   struct dea_solid *s = model->solid;
-  const struct dea_gradient_owner owner = {.solid = s,
-                                           .outcome = &model->at.outcome,
-                                           .model = model,
-                                           .voltage_V = model->at.voltage_V,
-                                           .slope = slope,
-                                           .monitor_slope = monitor_slope,
-                                           .monitors = get_monitors,
-                                           .enter = enter,
-                                           .hold = model->indent != NULL ? hold_tip : NULL,
-                                           .leave = leave,
-                                           .point = variant_point};
-  const struct dea_gradient_film film = film_of(model);
-  dea_gradient_places_find(&film, &v->places);
-  memcpy(v->force, s->state.force, s->problem.dofs * sizeof *v->force);
-  memcpy(v->own_V, s->state.own_V, (s->problem.channel_count + 1) * sizeof *v->own_V);
-  v->problem = s->problem;
-  v->ask = ask;
-  v->own = *model;
-  DEA_TRY(ctx, find_asked_motions(ctx, model));
-  return DEA_CHAIN(ctx, dea_gradient_find(ctx, &owner, ask, out));
-}
-
-dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *model,
-                                    const struct dea_gradient_request *ask, double *out)
-{
-  struct dea_arena memory = {.ctx = ctx};
-  const struct dea_solid_problem *p = &model->solid->problem;
-  dea_solver_state_end_history(ctx, &model->at);
-  if (dea_charge_is_held(model->solid)) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "gradients at a given charge are not supported");
-  }
-  DEA_TRY(ctx, dea_gradient_asks_mode(ask) ? dea_solid_check_densities(ctx, model) : DEA_OK);
-  struct dea_model_variant *v = model->variant = dea_arena_alloc(&memory, 1, sizeof *v);
-  double *values = dea_arena_alloc(&memory, 4 * p->dofs, sizeof *values);
-  double *own_V = dea_arena_alloc(&memory, p->channel_count + 1, sizeof *own_V);
-  enum dea_observed *motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *motion);
-  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&memory));
-  if (status == DEA_OK) {
-    v->force = values;
-    v->rest = values + p->dofs;
-    v->u = values + 2 * p->dofs;
-    v->shift = values + 3 * p->dofs;
-    v->own_V = own_V;
-    v->motion = motion;
-    dea_solid_liquids_stiffen(model, true);
-    status = find_gradient(ctx, model, ask, out);
-    dea_solid_liquids_stiffen(model, false);
-  }
-  model->variant = NULL;
-  dea_arena_free(&memory);
-  return DEA_CHAIN(ctx, status);
+  const struct dea_solid_problem *p = &s->problem;
+  struct dea_model_variant *v = model->variant = dea_arena_alloc(memory, 1, sizeof *v);
+  double *values = dea_arena_alloc(memory, 4 * p->dofs, sizeof *values);
+  double *own_V = dea_arena_alloc(memory, p->channel_count + 1, sizeof *own_V);
+  enum dea_observed *motion = dea_arena_alloc(memory, ask->monitor_count + 1, sizeof *motion);
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
+  *v = (struct dea_model_variant){.own = *model,
+                                  .problem = *p,
+                                  .force = values,
+                                  .rest = values + p->dofs,
+                                  .u = values + 2 * p->dofs,
+                                  .shift = values + 3 * p->dofs,
+                                  .own_V = own_V,
+                                  .motion = motion,
+                                  .ask = ask};
+  memcpy(v->force, s->state.force, p->dofs * sizeof *v->force);
+  memcpy(v->own_V, s->state.own_V, (p->channel_count + 1) * sizeof *v->own_V);
+  find_places(model, &v->places);
+  return DEA_CHAIN(ctx, find_asked_motions(ctx, model));
 }

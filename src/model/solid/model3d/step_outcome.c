@@ -1,4 +1,6 @@
-#include "model/solid/model3d/step_outcome.h"
+/* A solid on its way to a voltage, and the verdict where it does not get there
+ * (docs/theory/stops.md). */
+#include "model/solid/model3d/solid_model.h"
 
 #include "base/whole.h"
 #include "model/make.h"
@@ -16,11 +18,26 @@ static const double branch_jump = 1.5;
 static const double no_tension =
     1e-6; // of the scale: a membrane that is slack has none to rounding
 
+static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
+
+double dea_step_outcome_longest_V(const struct dea_step_outcome *e)
+{
+  return field_step_V_per_m * e->model->plies.thinnest_m;
+}
+
+/* What is small against the film's modulus is no tension. */
+static double least_tension(const struct dea_step_outcome *e)
+{
+  const struct dea_plies *plies = &e->model->plies;
+  return no_tension * (dea_part_material_modulus(&plies->part_materials[plies->film]) *
+                       e->model->layout->plies[plies->film].thickness_m);
+}
+
 /* Evaluates the films where the solid is, once: it is looked at where a load step ends and where
  * the next one begins. */
 static dea_status evaluate_film(struct dea_context *ctx, struct dea_step_outcome *e)
 {
-  struct dea_solid *s = e->owner.solid;
+  struct dea_solid *s = e->model->solid;
   struct dea_solid_extremes film;
   const size_t dofs = s->problem.dofs, count = dofs + s->problem.channel_count + 1;
   const bool first = e->film_at[0] == NULL;
@@ -36,7 +53,7 @@ static dea_status evaluate_film(struct dea_context *ctx, struct dea_step_outcome
   if (memcmp(now, e->film_at[0], count * sizeof *now) == 0) {
     return DEA_OK;
   }
-  dea_status status = dea_solid_extremes(s, e->owner.films, &film);
+  dea_status status = dea_solid_extremes(s, e->model->plies.films, &film);
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated on the way");
   }
@@ -50,7 +67,7 @@ static dea_status evaluate_film(struct dea_context *ctx, struct dea_step_outcome
  * largest area stretch. */
 static dea_status check_tension(struct dea_context *ctx, struct dea_step_outcome *e)
 {
-  double V = dea_solid_voltage(e->owner.solid);
+  double V = dea_solid_voltage(e->model->solid);
   DEA_TRY(ctx, evaluate_film(ctx, e));
   e->area = e->film.area;
   for (int i = 0; i < 2 && V != e->tension_V[2]; i++) {
@@ -65,7 +82,7 @@ static dea_status check_tension(struct dea_context *ctx, struct dea_step_outcome
 /* Whether the film carries tension all over where it was looked at last. */
 static bool is_taut(const struct dea_step_outcome *e)
 {
-  return e->tension[2] > no_tension * e->owner.tension_scale_N_per_m;
+  return e->tension[2] > least_tension(e);
 }
 
 /* The point where the solid is, as the event at which a solve ends. */
@@ -73,7 +90,7 @@ static dea_status get_event(struct dea_context *ctx, struct dea_step_outcome *e,
                             enum dea_event_kind kind)
 {
   dea_status status =
-      e->owner.point(ctx, e->owner.model, dea_solid_voltage(e->owner.solid), &e->limit.point);
+      dea_solid_model_report(ctx, e->model, dea_solid_voltage(e->model->solid), &e->limit.point);
   e->limit.kind = kind;
   e->limited = status == DEA_OK;
   return status;
@@ -105,7 +122,7 @@ static double slack_V(const struct dea_step_outcome *e, int first)
 static dea_status observe_slack_beyond(struct dea_context *ctx, struct dea_step_outcome *e,
                                        bool *slack)
 {
-  const double V = dea_solid_voltage(e->owner.solid), beyond = slack_V(e, 1);
+  const double V = dea_solid_voltage(e->model->solid), beyond = slack_V(e, 1);
   const double near = 1 + dea_branch_jump_width;
   *slack = e->tension_V[2] == V && e->tension_V[1] != V && beyond >= V && beyond <= near * V;
   if (*slack) {
@@ -120,12 +137,12 @@ static dea_status observe_slack_beyond(struct dea_context *ctx, struct dea_step_
 static dea_status observe_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
 {
   struct dea_step_outcome *e = user;
-  double V = dea_solid_voltage(e->owner.solid);
+  double V = dea_solid_voltage(e->model->solid);
   bool before = is_taut(e);
   bool thins = before || e->grew; // where it turns unstable: in one place
   if (where == DEA_STOP_LIMIT && !e->has_passed) {
     drop_limit(e);
-    DEA_TRY(ctx, dea_solid_save_state(ctx, e->owner.solid, &e->at_limit));
+    DEA_TRY(ctx, dea_solid_save_state(ctx, e->model->solid, &e->at_limit));
   }
   if (where == DEA_STOP_PASSED) {
     e->limited = false;
@@ -147,7 +164,7 @@ static dea_status observe_point(struct dea_context *ctx, void *user, enum dea_so
   DEA_TRY(ctx, check_tension(ctx, e));
   if (before && !is_taut(e) && !e->limited) {
     const double first_V = e->tension_V[1], last_V = e->tension_V[2];
-    const bool compressed = e->tension[2] < -no_tension * e->owner.tension_scale_N_per_m;
+    const bool compressed = e->tension[2] < -least_tension(e);
     const double at_V = slack_V(e, compressed ? 1 : 0); // a membrane has none from there on
     DEA_TRY(ctx, get_event(ctx, e, DEA_EVENT_SLACK));
     e->limit.point.voltage_V = fmin(fmax(at_V, fmin(first_V, last_V)), fmax(first_V, last_V));
@@ -161,7 +178,7 @@ static dea_status observe_change(struct dea_context *ctx, void *user, struct dea
   DEA_TRY(ctx, evaluate_film(ctx, e));
   out->grew = e->film.area > branch_jump * fmax(e->area, 1);
   e->grew |= out->grew;
-  out->taut = e->film.min_tension_N_per_m > no_tension * e->owner.tension_scale_N_per_m;
+  out->taut = e->film.min_tension_N_per_m > least_tension(e);
   return DEA_OK;
 }
 
@@ -181,7 +198,7 @@ static dea_status fail_slack(struct dea_context *ctx, const struct dea_step_outc
   if (stop->kind == DEA_STOP_UNSTABLE) {
     snprintf(state, sizeof state, "from %.6g kV on it buckles, in %d mode%s of this mesh",
              1e-3 * stop->voltage_V, stop->unstable_modes, stop->unstable_modes == 1 ? "" : "s");
-  } else if (e->owner.membrane) {
+  } else if (e->model->mesh.membrane) {
     snprintf(state, sizeof state, "wrinkled, it thins without limit");
   }
   return dea_fail(ctx, DEA_E_SLACK,
@@ -230,17 +247,17 @@ static dea_status stopped(struct dea_context *ctx, struct dea_step_outcome *e, d
     return dea_fail(ctx, status,
                     "at %.6g kV, on the way to %.6g kV, %s: a mesh that follows is finer "
                     "(compute.solid.refinement: %.3g)",
-                    1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why,
-                    fmax(e->owner.refinement, 1) + 1);
+                    1e-3 * dea_solid_voltage(e->model->solid), 1e-3 * voltage_V, why,
+                    fmax(e->model->settings.refinement, 1) + 1);
   }
   if (status == DEA_E_DOMAIN) {
     return dea_fail(ctx, status, "the law ends at %.6g kV, on the way to %.6g kV: %s",
-                    1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
+                    1e-3 * dea_solid_voltage(e->model->solid), 1e-3 * voltage_V, why);
   }
   return dea_fail(ctx, status,
                   "the solver did not converge at %.6g kV, on the way to %.6g kV (%s); please "
                   "report the design. The points before are kept",
-                  1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
+                  1e-3 * dea_solid_voltage(e->model->solid), 1e-3 * voltage_V, why);
 }
 
 /* A membrane that thins at once has no tension in that place, where nothing but the end of its law
@@ -253,7 +270,7 @@ static dea_status refuse_thin(struct dea_context *ctx, struct dea_step_outcome *
   e->limit = e->passed;
   e->limited = true;
   e->has_passed = false;
-  dea_solid_restore_state(e->owner.solid, from);
+  dea_solid_restore_state(e->model->solid, from);
   DEA_TRY(ctx, check_tension(ctx, e));
   if (!isnan(e->limit.point.electrode_stretch)) {
     snprintf(stretch, sizeof stretch, " and an electrode stretch of %.5g",
@@ -271,13 +288,13 @@ static dea_status approach(struct dea_context *ctx, struct dea_step_outcome *e, 
                            bool *passed)
 {
   const struct dea_solid_watch watch = {observe_point, observe_change, was_taut, e};
-  e->from_V = dea_solid_voltage(e->owner.solid);
+  e->from_V = dea_solid_voltage(e->model->solid);
   e->limited = e->grew = *passed = false;
   DEA_TRY(ctx, check_tension(ctx, e));
   e->from_area = e->area;
   const bool taut = is_taut(e);
   dea_status status =
-      dea_solid_solve_incremental(ctx, e->owner.solid, voltage_V, taut, &watch, report, stop);
+      dea_solid_solve_incremental(ctx, e->model->solid, voltage_V, taut, &watch, report, stop);
   if (status != DEA_OK) {
     return status;
   }
@@ -300,13 +317,13 @@ static dea_status step(struct dea_context *ctx, struct dea_step_outcome *e, doub
   struct dea_solid_stop stop;
   struct dea_solid_saved_state from;
   bool passed = false;
-  dea_status status = dea_solid_save_state(ctx, e->owner.solid, &from);
+  dea_status status = dea_solid_save_state(ctx, e->model->solid, &from);
   status = status == DEA_OK ? approach(ctx, e, voltage_V, report, &stop, &passed) : status;
   if (dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM) {
     status = stopped(ctx, e, voltage_V, &stop, status);
   } else if (status == DEA_OK && passed) {
     const bool thin =
-        e->owner.membrane && !is_taut(e) && e->area > branch_jump * fmax(e->from_area, 1);
+        e->model->mesh.membrane && !is_taut(e) && e->area > branch_jump * fmax(e->from_area, 1);
     status = thin ? refuse_thin(ctx, e, voltage_V, &from)
                   : dea_model_report_passed(ctx, "3d", e->from_V, voltage_V, &e->limit);
   }
@@ -321,7 +338,7 @@ dea_status dea_step_outcome_move(struct dea_context *ctx, struct dea_step_outcom
   bool passed;
   e->has_passed = false;
   drop_limit(e);
-  dea_status status = approach(ctx, e, dea_solid_voltage(e->owner.solid), report, &stop, &passed);
+  dea_status status = approach(ctx, e, dea_solid_voltage(e->model->solid), report, &stop, &passed);
   *fraction = passed || status == DEA_E_NO_EQUILIBRIUM ? stop.load_factor : NAN;
   return status;
 }
@@ -339,9 +356,9 @@ dea_status dea_step_outcome_go(struct dea_context *ctx, struct dea_step_outcome 
                                double voltage_V, struct dea_solid_report *report)
 {
   double distance_V = voltage_V - from_V, at_V = from_V;
-  int steps = isfinite(e->owner.step_V)
-                  ? dea_whole(ceil(fabs(distance_V) / e->owner.step_V - 1e-9), 1, INT_MAX - 1)
-                  : 1;
+  const double step_V = dea_step_outcome_longest_V(e);
+  int steps =
+      isfinite(step_V) ? dea_whole(ceil(fabs(distance_V) / step_V - 1e-9), 1, INT_MAX - 1) : 1;
   e->limited = e->has_passed = false;
   drop_limit(e);
   for (int i = 1; i <= steps; i++) {
@@ -353,17 +370,30 @@ dea_status dea_step_outcome_go(struct dea_context *ctx, struct dea_step_outcome 
     DEA_TRY(ctx, step(ctx, e, next_V, report));
     at_V = next_V;
     DEA_TRY(ctx, report->snapped ? report_snap(ctx, at_V) : DEA_OK);
-    DEA_TRY(ctx, e->owner.arrived(ctx, e->owner.model, at_V));
+    DEA_TRY(ctx, dea_solid_model_arrived(ctx, e->model, at_V));
   }
   return DEA_OK;
 }
 
-const struct dea_event *dea_step_outcome_limit(const struct dea_step_outcome *e)
+// What the model does ----------------------------------------------------------------------------
+
+void dea_solid_model_end_history(struct dea_context *ctx, struct dea_model *model)
 {
-  return e->limited ? &e->limit : NULL;
+  model->at.as_made = false;
+  if (model->at.driven != NULL) {
+    dea_circuit_step_destroy(ctx, model->at.driven);
+    model->at.driven = NULL;
+    model->at.voltage_V = dea_solid_voltage(model->solid);
+  }
 }
 
-const struct dea_event *dea_step_outcome_passed(const struct dea_step_outcome *e)
+dea_status dea_solid_model_solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                                 struct dea_load_point *out)
 {
-  return e->has_passed ? &e->passed : NULL;
+  if (!model->at.as_made || voltage_V != model->at.voltage_V) {
+    dea_solid_model_end_history(ctx, model);
+    DEA_TRY(ctx, dea_step_outcome_go(ctx, &model->at.outcome, model->at.voltage_V, voltage_V,
+                                     &model->at.report));
+  }
+  return DEA_CHAIN(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
 }

@@ -1,5 +1,5 @@
-/* The engine with a mesh, materials, supports and loads of the caller's: model/solid_access.h. */
-#include "model/solid_access.h"
+/* The engine with a mesh, materials, supports and loads of the caller's: api/own_mesh.h. */
+#include "api/own_mesh.h"
 
 #include "base/module.h"
 #include "model/solid/assembly/channels.h"
@@ -51,12 +51,12 @@ struct dea_solid_object {
 
 static void box_map(const void *self, double s, double t, double x[2])
 {
-  const struct dea_solid_spec *spec = self;
+  const dea_solid_options *spec = self;
   x[0] = spec->box_m[0] * s;
   x[1] = spec->box_m[1] * t;
 }
 
-static dea_status build_box(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status build_box(struct dea_context *ctx, const dea_solid_options *spec,
                             struct dea_grid **out)
 {
   size_t nx = spec->elements[0], ny = spec->elements[1];
@@ -76,7 +76,7 @@ static dea_status build_box(struct dea_context *ctx, const struct dea_solid_spec
   return status;
 }
 
-static dea_status fill_grid(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status fill_grid(struct dea_context *ctx, const dea_solid_options *spec,
                             struct dea_grid *grid)
 {
   size_t nodes = (size_t)((spec->order + 1) * (spec->order + 1) * (spec->order_z + 1));
@@ -106,7 +106,7 @@ static dea_status fill_grid(struct dea_context *ctx, const struct dea_solid_spec
   return DEA_OK;
 }
 
-static dea_status build_grid(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status build_grid(struct dea_context *ctx, const dea_solid_options *spec,
                              struct dea_grid **out)
 {
   DEA_TRY(ctx, dea_grid_allocate(ctx, spec->order, spec->order_z, spec->point_count,
@@ -120,7 +120,7 @@ struct filling {
   size_t ply_count;
 };
 
-static dea_status fill_plies(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status fill_plies(struct dea_context *ctx, const dea_solid_options *spec,
                              const struct dea_plane_mesh *mesh, struct filling *out)
 {
   out->ply_count = spec->ply_count;
@@ -128,7 +128,7 @@ static dea_status fill_plies(struct dea_context *ctx, const struct dea_solid_spe
   DEA_TRY_MEMORY(out->part != NULL);
   memset(out->part, -1, mesh->region_count * spec->ply_count * sizeof *out->part);
   for (size_t i = 0; i < spec->fill_count; i++) {
-    const struct dea_fill_spec *fill = &spec->fills[i];
+    const dea_fill *fill = &spec->fills[i];
     size_t group = fill->group != NULL ? dea_plane_mesh_group(mesh, fill->group) : 0;
     if (group >= mesh->group_count) {
       return dea_fail(ctx, DEA_E_ARGUMENT, "'%s' has no physical surface '%.60s'", spec->msh_file,
@@ -153,14 +153,15 @@ static bool is_filled(const void *self, int region, int ply)
   return filling->part[(size_t)region * filling->ply_count + (size_t)ply] >= 0;
 }
 
-static dea_status extrude(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status extrude(struct dea_context *ctx, const dea_solid_options *spec,
                           const struct dea_plane_mesh *mesh, const struct filling *filling,
                           struct dea_grid **out)
 {
   struct dea_ply *plies = dea_alloc(ctx, spec->ply_count, sizeof *plies);
   DEA_TRY_MEMORY(plies != NULL);
   for (size_t i = 0; i < spec->ply_count; i++) {
-    plies[i] = (struct dea_ply){spec->ply_thickness_m[i], spec->ply_elements[i], spec->order_z};
+    const size_t through = spec->ply_elements != NULL ? spec->ply_elements[i] : 1;
+    plies[i] = (struct dea_ply){spec->ply_thickness_m[i], through, spec->order_z};
   }
   const struct dea_stack stack = {
       .plies = plies, .count = spec->ply_count, .present = is_filled, .self = filling};
@@ -178,7 +179,7 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_solid_spec *
   return DEA_OK;
 }
 
-static dea_status build_plies(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status build_plies(struct dea_context *ctx, const dea_solid_options *spec,
                               struct dea_plane_mesh **plane, struct dea_grid **out)
 {
   struct filling filling = {0};
@@ -264,13 +265,18 @@ static dea_status find_nodes(struct dea_context *ctx, const struct dea_solid_obj
 }
 
 /* Two nodes for each body behind those of the mesh. follows: [nodes of the mesh], of the caller. */
-static dea_status mark_body(struct dea_context *ctx, const struct dea_body_spec *body, int number,
+static dea_status mark_body(struct dea_context *ctx, const dea_body *body, int number,
                             const struct dea_solid_object *object, int *follows)
 {
-  const struct dea_solid_place place = {body->low_m, body->high_m, body->curve, body->nodes,
-                                        body->node_count};
+  struct dea_solid_place place = {NULL, NULL, body->curve, body->nodes, body->node_count};
   bool *on;
   size_t found = 0;
+  for (int i = 0; i < 3; i++) { // both 0: everywhere
+    if (body->low_m[i] != 0 || body->high_m[i] != 0) {
+      place.low_m = body->low_m;
+      place.high_m = body->high_m;
+    }
+  }
   DEA_TRY(ctx, find_nodes(ctx, object, place, &on));
   for (size_t n = 0; n < object->mesh_node_count; n++) {
     if (on[n]) {
@@ -284,14 +290,14 @@ static dea_status mark_body(struct dea_context *ctx, const struct dea_body_spec 
 }
 
 /* bodies: [body_count], follows: [all nodes], of the caller. */
-static dea_status add_bodies(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status add_bodies(struct dea_context *ctx, const dea_body *given,
                              struct dea_solid_object *object, struct dea_solid_body *bodies,
                              int *follows)
 {
-  for (size_t k = 0; k < spec->body_count; k++) {
-    const double *X = spec->bodies[k].centre_m;
+  for (size_t k = 0; k < object->body_count; k++) {
+    const double *X = given[k].centre_m;
     const double twice[6] = {X[0], X[1], X[2], X[0], X[1], X[2]};
-    DEA_TRY(ctx, mark_body(ctx, &spec->bodies[k], (int)k + 1, object, follows));
+    DEA_TRY(ctx, mark_body(ctx, &given[k], (int)k + 1, object, follows));
     DEA_TRY(ctx, dea_grid_add_nodes(ctx, object->grid, 2, twice, &bodies[k].node));
   }
   return DEA_OK;
@@ -300,7 +306,7 @@ static dea_status add_bodies(struct dea_context *ctx, const struct dea_solid_spe
 // Parts ------------------------------------------------------------------------------------------
 
 /* Of the compressible law where the part has none. */
-static dea_status build_part_material(struct dea_context *ctx, const struct dea_part_spec *part,
+static dea_status build_part_material(struct dea_context *ctx, const dea_part *part,
                                       struct dea_part_material *out)
 {
   double l = part->pre_stretch;
@@ -309,9 +315,9 @@ static dea_status build_part_material(struct dea_context *ctx, const struct dea_
   } else {
     *out = (struct dea_part_material){.pre_stretch = {l, l, 1 / (l * l)},
                                       .kappa_Pa = part->bulk_modulus_Pa};
-    dea_part_material_set_law(out, part->law, part->param);
+    dea_part_material_set_law(out, dea_law_find(part->law), part->parameters);
   }
-  out->permittivity_F_per_m = part->permittivity_F_per_m;
+  out->permittivity_F_per_m = part->permittivity * DEA_EPSILON_0;
   out->thickness_m = part->electrode_gap_m;
   out->density_kg_per_m3 = part->density_kg_per_m3;
   if (dea_part_material_relax(out) != DEA_OK) {
@@ -344,15 +350,15 @@ static void channels(const void *self, int region, int ply, int *top, int *botto
 }
 
 /* Of all parts, and the highest one. */
-static dea_status get_channels(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status get_channels(struct dea_context *ctx, const dea_part *parts,
                                struct dea_solid_object *object)
 {
   enum { CHANNELS_MAX = 1000 };
   object->channel_count = 1;
-  for (size_t i = 0; i < spec->part_count; i++) {
+  for (size_t i = 0; i < object->part_count; i++) {
     int *of = object->between[i];
-    of[0] = spec->parts[i].channel_above;
-    of[1] = spec->parts[i].channel_below;
+    of[0] = parts[i].channel_above;
+    of[1] = parts[i].channel_below;
     for (int k = 0; k < 2; k++) {
       if (of[k] < 0 || of[k] > CHANNELS_MAX) {
         return dea_fail(ctx, DEA_E_ARGUMENT, "part %zu has the channel %d; 0 to %d are possible", i,
@@ -395,12 +401,12 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
   }
 }
 
-/* With the bodies of the spec, whose memory is of the caller. */
-static dea_status build_solid(struct dea_context *ctx, const struct dea_solid_spec *spec,
-                              struct dea_solid_object *object, struct dea_solid_body *bodies,
-                              int *follows)
+/* With these bodies, in memory of the caller. */
+static dea_status build_solid(struct dea_context *ctx, const dea_solid_options *spec,
+                              const dea_body *given, struct dea_solid_object *object,
+                              struct dea_solid_body *bodies, int *follows)
 {
-  DEA_TRY(ctx, add_bodies(ctx, spec, object, bodies, follows));
+  DEA_TRY(ctx, add_bodies(ctx, given, object, bodies, follows));
   const struct dea_solid_options options = {.order_z = spec->order_z,
                                             .part_material_count = object->part_count,
                                             .part_materials = object->part_materials,
@@ -417,7 +423,8 @@ static dea_status build_solid(struct dea_context *ctx, const struct dea_solid_sp
   return DEA_CHAIN(ctx, dea_solid_create(ctx, object->grid, &options, &object->solid));
 }
 
-static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status fill(struct dea_context *ctx, const dea_solid_options *spec,
+                       const dea_part *parts, const dea_body *given,
                        struct dea_solid_object *object)
 {
   DEA_TRY(ctx, spec->msh_file != NULL  ? build_plies(ctx, spec, &object->plane, &object->grid)
@@ -429,29 +436,30 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
   object->part_materials = dea_alloc(ctx, spec->part_count, sizeof *object->part_materials);
   object->between = dea_alloc(ctx, spec->part_count, sizeof *object->between);
   DEA_TRY_MEMORY(object->part_materials != NULL && object->between != NULL);
-  DEA_TRY(ctx, get_channels(ctx, spec, object));
+  DEA_TRY(ctx, get_channels(ctx, parts, object));
   for (size_t i = 0; i < spec->part_count; i++) {
-    DEA_TRY(ctx, build_part_material(ctx, &spec->parts[i], &object->part_materials[i]));
+    DEA_TRY(ctx, build_part_material(ctx, &parts[i], &object->part_materials[i]));
   }
   object->body_count = spec->body_count;
   object->body_values = dea_alloc(ctx, 12 * spec->body_count, sizeof(double));
   struct dea_solid_body *bodies = dea_alloc(ctx, spec->body_count, sizeof *bodies);
   int *follows = dea_alloc(ctx, object->mesh_node_count + 2 * spec->body_count, sizeof *follows);
   dea_status status = object->body_values != NULL && bodies != NULL && follows != NULL
-                          ? build_solid(ctx, spec, object, bodies, follows)
+                          ? build_solid(ctx, spec, given, object, bodies, follows)
                           : DEA_E_MEMORY;
   dea_free(ctx, bodies);
   dea_free(ctx, follows);
   return status;
 }
 
-static dea_status create(struct dea_context *ctx, const struct dea_solid_spec *spec,
+static dea_status create(struct dea_context *ctx, const dea_solid_options *spec,
+                         const dea_part *parts, const dea_body *bodies,
                          struct dea_solid_object **out)
 {
   *out = NULL;
   struct dea_solid_object *object = dea_alloc(ctx, 1, sizeof *object);
   DEA_TRY_MEMORY(object != NULL);
-  dea_status status = fill(ctx, spec, object);
+  dea_status status = fill(ctx, spec, parts, bodies, object);
   if (status != DEA_OK) {
     destroy(ctx, object);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -534,11 +542,15 @@ static double spring_end(const struct dea_solid_object *object, size_t body, int
 }
 
 static dea_status add_spring(struct dea_context *ctx, struct dea_solid_object *object,
-                             const struct dea_spring_spec *spec)
+                             const dea_body_spring *spec)
 {
+  int component = 0;
+  while (component < 6 && spec->component != 1 << component) {
+    component++;
+  }
   end_path(ctx, object);
   DEA_TRY(ctx, check_body(ctx, object, spec->body));
-  if (spec->component < 0 || spec->component > 5 || !isfinite(spec->place)) {
+  if (component > 5 || !isfinite(spec->place)) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a spring holds one component of a body at a place");
   }
   size_t count = object->spring_count + 1;
@@ -548,16 +560,15 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_solid_object *o
   object->spring_values = values != NULL ? values : object->spring_values;
   DEA_TRY_MEMORY(springs != NULL && values != NULL);
   const struct dea_solid_body *body = &object->solid->problem.bodies[spec->body];
-  const struct dea_spring_options options = {.node = body->node + (size_t)spec->component / 3,
-                                             .component = spec->component % 3,
-                                             .unit_m = spec->component < 3 ? 1 : body->length_m,
-                                             .place =
-                                                 spring_end(object, spec->body, spec->component),
+  const struct dea_spring_options options = {.node = body->node + (size_t)component / 3,
+                                             .component = component % 3,
+                                             .unit_m = component < 3 ? 1 : body->length_m,
+                                             .place = spring_end(object, spec->body, component),
                                              .stiffness = spec->stiffness,
                                              .count = spec->count,
                                              .at = spec->at,
                                              .force = spec->force};
-  struct held_spring one = {.body = spec->body, .component = spec->component};
+  struct held_spring one = {.body = spec->body, .component = component};
   DEA_TRY(ctx, dea_spring_create(ctx, &options, &one.spring));
   const struct dea_solid_load load = dea_spring_load(one.spring);
   dea_status status = dea_solid_add_load(ctx, object->solid, &load);
@@ -616,15 +627,13 @@ static dea_status set(struct dea_context *ctx, struct dea_solid_object *object, 
                    dea_solid_settings_set(ctx, dea_solid_settings_of(object->solid), name, value));
 }
 
-static bool setting(const struct dea_solid_object *object, size_t number, const char *text[3],
-                    double *value)
+static bool setting(const struct dea_solid_object *object, size_t number, dea_solid_setting *out)
 {
+  double value;
   const struct dea_solid_setting *found =
-      dea_solid_settings_at(dea_solid_settings_of(object->solid), number, value);
+      dea_solid_settings_at(dea_solid_settings_of(object->solid), number, &value);
   if (found != NULL) {
-    text[0] = found->name;
-    text[1] = found->unit;
-    text[2] = found->meaning;
+    *out = (dea_solid_setting){found->name, found->unit, found->meaning, value};
   }
   return found != NULL;
 }
@@ -837,24 +846,24 @@ static bool number(const struct dea_solid_object *object, const char *name, doub
   return false;
 }
 
-extern DEA_MODULE_SYMBOL const struct dea_solid_access dea_solid_access;
+extern DEA_MODULE_SYMBOL const struct dea_own_mesh dea_own_mesh;
 
-const struct dea_solid_access dea_solid_access = {.create = create,
-                                                  .destroy = destroy,
-                                                  .set = set,
-                                                  .setting = setting,
-                                                  .hold = hold,
-                                                  .hold_body = hold_body,
-                                                  .push_body = push_body,
-                                                  .add_spring = add_spring,
-                                                  .move_spring = move_spring,
-                                                  .pull = pull,
-                                                  .set_channel = set_channel,
-                                                  .solve = solve,
-                                                  .find_charges = find_charges,
-                                                  .modes = modes,
-                                                  .path = path,
-                                                  .step = step,
-                                                  .array = array,
-                                                  .mesh = mesh,
-                                                  .number = number};
+const struct dea_own_mesh dea_own_mesh = {.create = create,
+                                          .destroy = destroy,
+                                          .set = set,
+                                          .setting = setting,
+                                          .hold = hold,
+                                          .hold_body = hold_body,
+                                          .push_body = push_body,
+                                          .add_spring = add_spring,
+                                          .move_spring = move_spring,
+                                          .pull = pull,
+                                          .set_channel = set_channel,
+                                          .solve = solve,
+                                          .find_charges = find_charges,
+                                          .modes = modes,
+                                          .path = path,
+                                          .step = step,
+                                          .array = array,
+                                          .mesh = mesh,
+                                          .number = number};
