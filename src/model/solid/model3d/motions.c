@@ -4,7 +4,7 @@
 #include "model/solid/model3d/solid_model.h"
 #include "model/solid/motion/response.h"
 #include "result/columns.h"
-#include "result/copies.h"
+#include "result/field_mesh.h"
 
 #include <math.h>
 #include <stdio.h>
