@@ -1,4 +1,4 @@
-/* What a column may be, by its name and unit; the words of names are table/word_list.h. */
+/* What a column may be, by its name and unit; the words of names are in table/words.c. */
 #pragma once
 
 #include "import/import.h"
