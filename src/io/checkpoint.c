@@ -1,7 +1,7 @@
 #include "io/checkpoint.h"
 
 #include "base/write_file.h"
-#include "figures/colour_map.h"
+#include "figures/surface_lattice.h"
 #include "io/results_h5.h"
 #include "io/state_file.h"
 #include "io/vtu.h"
