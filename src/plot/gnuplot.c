@@ -146,7 +146,7 @@ static dea_status draw_all(const struct dea_plot_folder *f)
   if (status == DEA_OK) {
     status = draw(f, drawing);
     for (size_t i = 0; i < f->count && status == DEA_OK; i++) {
-      status = dea_picture_finish(f->ctx, drawing, f->path, f->names[i]);
+      status = dea_picture_finish(f->ctx, drawing, f->path, f->names[i], f->format);
     }
     if (status == DEA_OK) {
       status = empty_folder(f->ctx, drawing, f->path, true);
