@@ -270,8 +270,7 @@
         }
       });
     }
-    const reset = dea.element('button', { type: 'button' }, 'Back to the run’s design');
-    reset.addEventListener('click', () => {
+    const reset = dea.button('Back to the run’s design', () => {
       Object.assign(chosen, initial);
       axes.forEach(({ key, factor }) => sliders[key].set(factor * chosen[key]));
       later();

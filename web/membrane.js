@@ -302,13 +302,11 @@
       choose();
       draw();
     });
-    const reset = dea.element('button', { type: 'button' }, 'Reset view');
-    reset.addEventListener('click', () => {
+    const reset = dea.button('Reset view', () => {
       Object.assign(state, { turn: -0.6, tilt: 0.55, zoom: 1 });
       draw();
     });
-    const top = dea.element('button', { type: 'button' }, 'From above');
-    top.addEventListener('click', () => {
+    const top = dea.button('From above', () => {
       Object.assign(state, { turn: 0, tilt: Math.PI / 2, zoom: 1 });
       draw();
     });

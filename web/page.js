@@ -36,6 +36,11 @@ const dea = {
   svg(tag, attributes = {}, ...content) {
     return this.fill(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, content);
   },
+  button(text, act, attributes = {}) {
+    const node = this.element('button', { type: 'button', ...attributes }, text);
+    node.addEventListener('click', act);
+    return node;
+  },
   // A labelled slider with its value beside it; show: value -> text.
   slider(label, low, high, step, value, show, change) {
     const output = this.element('output');

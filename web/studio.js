@@ -19,7 +19,7 @@
   const tell = (text) => { $('saved').textContent = text; };
   const command = (text) => { $('command').textContent = text; };
 
-  // The editor: CodeMirror where this program was built with it, else a plain field -----------------
+  // The editor ---------------------------------------------------------------------------------------
 
   // What to replace of one text to make the other of it: from, to, by.
   const between = (a, b) => {
@@ -34,49 +34,20 @@
   };
   const editor = (() => {
     const host = $('editor');
-    const heard = [];
-    const hear = (change) => heard.push(change);
-    const changed = () => heard.forEach((change) => change());
-    if (window.CodeMirror === undefined) {
-      const field = dea.element('textarea', { spellcheck: 'false', wrap: 'off', 'aria-label': 'Design' });
-      const offset = (line, column) => field.value.split('\n').slice(0, line).reduce((sum, one) => sum + one.length + 1, 0) + column;
-      host.append(field);
-      field.addEventListener('input', changed);
-      const replace = (text, from, to) => {
-        const at = document.activeElement;
-        field.focus({ preventScroll: true });
-        field.setSelectionRange(from, to);
-        if (!document.execCommand('insertText', false, text)) { // keeps what can be undone
-          field.setRangeText(text, from, to, 'end');
-          changed();
-        }
-        at?.focus({ preventScroll: true });
-      };
-      return {
-        hear, get: () => field.value, read: (text) => { field.value = text; },
-        set: (text) => {
-          const [from, to, by] = between(field.value, text);
-          replace(by, from, to);
-        },
-        replace: (text, line, from, to) => replace(text, offset(line, from), offset(line, to)),
-        go: (line, column) => { field.focus(); field.setSelectionRange(offset(line, column), offset(line, column)); },
-        mark: () => {}, refresh: () => {},
-      };
-    }
     const mirror = window.CodeMirror(host, {
       mode: 'yaml', lineNumbers: true, lineWrapping: false, indentUnit: 2, inputStyle: 'contenteditable',
       extraKeys: { Tab: false, 'Shift-Tab': false, 'Ctrl-Space': 'autocomplete', 'Ctrl-/': 'toggleComment' }, // Tab leaves
       hintOptions: { hint: (cm) => complete(cm), completeSingle: false },
     });
     mirror.getInputField().setAttribute('aria-label', 'Design');
-    mirror.on('change', (_, change) => { if (change.origin !== 'setValue') { changed(); } });
+    mirror.on('change', (_, change) => { if (change.origin !== 'setValue') { later(); } });
     mirror.on('inputRead', (_, change) => {
       if (/^[A-Za-z_]$/.test(change.text[0]) && !mirror.state.completionActive) {
         mirror.showHint();
       }
     });
     return {
-      hear, get: () => mirror.getValue(),
+      get: () => mirror.getValue(),
       read: (text) => { mirror.setValue(text); mirror.clearHistory(); },
       set: (text) => {
         const [from, to, by] = between(mirror.getValue(), text);
@@ -360,9 +331,8 @@
 
   const showFindings = (findings) => {
     $('findings').replaceChildren(...findings.map((one) => {
-      const button = dea.element('button', { type: 'button' }, `${one.line > 0 ? `${one.line}:${one.column} ` : ''}${one.text}`);
-      button.addEventListener('click', () => { if (one.line > 0) { editor.go(one.line - 1, Math.max(0, one.column - 1)); } });
-      return dea.element('li', { class: `is-${one.severity}` }, button);
+      const go = () => { if (one.line > 0) { editor.go(one.line - 1, Math.max(0, one.column - 1)); } };
+      return dea.element('li', { class: `is-${one.severity}` }, dea.button(`${one.line > 0 ? `${one.line}:${one.column} ` : ''}${one.text}`, go));
     }));
     editor.mark(findings);
   };
@@ -453,10 +423,10 @@
     return null;
   };
   let soon = 0;
-  editor.hear(() => {
+  const later = () => {
     clearTimeout(soon);
     soon = setTimeout(touch, 15);
-  });
+  };
 
   // Values: a field for each that the file gives -----------------------------------------------------
 
@@ -624,11 +594,7 @@
     $('folder-view').hidden = false;
     $('folder-title').textContent = name;
     const href = (file) => address('file', { name: `${name}/${file}` });
-    const own = (file) => {
-      const button = dea.element('button', { type: 'button' }, 'Open a copy');
-      button.addEventListener('click', () => adopt(name, file));
-      return button;
-    };
+    const own = (file) => dea.button('Open a copy', () => adopt(name, file));
     const links = json.map((file) => dea.element('li', {}, ...(file.endsWith('.yaml') && /\.(optimise|fit)$/.test(name) ? [own(file), ' '] : []), dea.element('a', { href: href(file), target: '_blank', rel: 'noopener', ...(/\.(svg|html|csv|yaml|json|png)$/.test(file) ? {} : { download: file }) }, file)));
     const pictures = json.filter((file) => file.endsWith('.svg')).map((file) => dea.element('img', { src: href(file), alt: file, loading: 'lazy' }));
     const cases = json.includes('cases.csv') ? [casesTable((await call('GET', 'file', { name: `${name}/cases.csv` })).text)] : [];
@@ -686,11 +652,7 @@
     const count = /(\d+)\/(\d+)/.exec(job.progress);
     const head = dea.element('span', { class: 'head' }, dea.element('b', {}, job.output), ` ${job.action}: ${job.state}${going && job.progress ? `, ${job.progress}` : ''}`);
     const row = dea.element('li', { 'data-id': job.id }, head);
-    const button = (text, act) => {
-      const node = dea.element('button', { type: 'button' }, text);
-      node.addEventListener('click', act);
-      head.append(node);
-    };
+    const button = (text, act) => head.append(dea.button(text, act));
     if (going) {
       button('Stop', () => call('POST', 'stop', {}, JSON.stringify({ id: job.id })));
       row.append(dea.element('progress', { 'aria-label': job.output, ...(count !== null && Number(count[2]) > 0 ? { value: count[1], max: count[2] } : {}) }));
@@ -760,11 +722,7 @@
           showPanels();
         });
         const row = dea.element('li', {}, dea.element('label', {}, box, one.name));
-        const button = (text, title, act) => {
-          const node = dea.element('button', { type: 'button', title }, text);
-          node.addEventListener('click', act);
-          row.append(node);
-        };
+        const button = (text, title, act) => row.append(dea.button(text, act, { title }));
         if (one.report !== '') {
           button('Open report', `${one.name}/report.html`, () => showReport(one.name));
         }
@@ -900,7 +858,7 @@
     const free = known.find((one) => ![...$('study-keys').querySelectorAll('select')].some((select) => select.value === one.name)) ?? known[0];
     const select = dea.element('select', { 'aria-label': 'Key' }, ...known.map((one) => dea.element('option', { value: one.name }, `${one.name} (${one.text})`)));
     const ends = ['From', 'To'].map((label) => dea.element('input', { type: 'text', 'aria-label': label }));
-    const less = dea.element('button', { type: 'button', 'aria-label': 'Leave this key' }, '−');
+    const less = dea.button('−', () => { row.remove(); showStudy(); }, { 'aria-label': 'Leave this key' });
     const row = dea.element('li', {}, select, ...ends, less);
     const fill = () => {
       const of = known.find((one) => one.name === select.value);
@@ -908,7 +866,6 @@
       showStudy();
     };
     $('study-keys').append(row);
-    less.addEventListener('click', () => { row.remove(); showStudy(); });
     select.addEventListener('change', fill);
     if (free !== undefined) {
       select.value = free.name;
@@ -1153,11 +1110,20 @@
     }
     meet(answer.json);
   };
+  // What there is, as long as the studio answers.
+  const follow = async () => {
+    for (let last = ''; ; await wait(200)) {
+      const answer = await call('GET', 'state').catch(() => null);
+      $('lost').hidden = answer?.json !== undefined;
+      if (answer?.json && answer.text !== last) {
+        last = answer.text;
+        take(answer.json);
+      }
+    }
+  };
   const begin = async () => {
     state = (await call('GET', 'state')).json;
-    const events = new EventSource('events');
-    events.onmessage = (event) => { $('lost').hidden = true; take(JSON.parse(event.data)); };
-    events.onerror = async () => { await wait(500); $('lost').hidden = events.readyState === EventSource.OPEN; };
+    follow();
     if (window.location.hash.length < 2 && state.open !== '') {
       window.location.replace(`#${encodeURIComponent(state.open)}`);
     }

@@ -10,7 +10,6 @@
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "result/provenance.h"
-#include "studio/studio.h"
 
 #include <errno.h>
 #include <string.h>
@@ -197,16 +196,6 @@ static void check_nlopt(struct report *report)
       "install libnlopt-dev, and build again; without it there is dea sweep, but no dea optimise");
 }
 
-static void check_studio(struct report *report)
-{
-  bool server, editor;
-  dea_studio_parts(&server, &editor);
-  print_row(report, WISHED, server, "page of dea studio", server ? "civetweb" : "not built",
-            "install libcivetweb-dev, and build again; without it there is no dea studio");
-  print_row(report, WISHED, editor, "editor of dea studio", editor ? "CodeMirror" : "a plain field",
-            "install libjs-codemirror, and build again; without it keys are not completed");
-}
-
 static void check_matio(struct report *report)
 {
   char path[4096];
@@ -255,7 +244,6 @@ static int run(struct dea_cli *cli, void *request)
   check_cairo(&report);
   check_geos(&report);
   check_nlopt(&report);
-  check_studio(&report);
   check_matio(&report);
   check_folder(&report);
   if (status == DEA_OK && !report.usable) {

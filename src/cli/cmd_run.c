@@ -430,7 +430,7 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
   if (!began) {
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  DEA_TRY(ctx, !dea_checkpoint_refused(run->job.keep) ? deliver(cli, request, run) : DEA_OK);
+  DEA_TRY(ctx, !run->job.keep.refused ? deliver(cli, request, run) : DEA_OK);
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
 

@@ -6,7 +6,7 @@
 #include "explore/explore_sweep.h"
 #include "explore/plan.h"
 #include "explore/slopes.h"
-#include "plot/gnuplot.h"
+#include "plot/plot.h"
 #include "result/columns.h"
 #include "result/figure.h"
 

@@ -1,11 +1,13 @@
 #include "figures/device_drawing.h"
 
+#include "base/sort.h"
 #include "base/write_file.h"
 #include "figures/dimensions.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -566,18 +568,6 @@ static double section_height(const struct dea_layout *l, size_t ply)
   return own * fmin(1, section_room / all);
 }
 
-static void sort(double *x, size_t count)
-{
-  for (size_t i = 1; i < count; i++) {
-    double moved = x[i];
-    size_t k = i;
-    for (; k > 0 && x[k - 1] > moved; k--) {
-      x[k] = x[k - 1];
-    }
-    x[k] = moved;
-  }
-}
-
 /* Height of the section: a little above the middle, where no edge runs along it. */
 static double cut_y(const struct view *v)
 {
@@ -756,7 +746,7 @@ static size_t find_cuts(const struct view *v, double x[CUTS])
   for (size_t i = 0; i < l->electrode_count; i++) {
     add_cuts(v, l->electrodes[i].region, x, &count);
   }
-  sort(x, count);
+  qsort(x, count, sizeof *x, dea_rising);
   return count;
 }
 
@@ -808,9 +798,12 @@ static void add_key(struct view *v, const struct style *style, const char *forma
   v->key_y -= v->column == 0 ? line_height : 0;
 }
 
-/* Starts a new line with a heading. */
-static void add_heading(struct view *v, const char *words)
+/* Starts a new line with a heading where there is something to stand below it. */
+static void add_heading(struct view *v, size_t count, const char *words)
 {
+  if (count == 0) {
+    return;
+  }
   v->key_y -= (v->column == 1 ? line_height : 0) + 1.5;
   v->column = 0;
   draw_text(v, margin, v->key_y, key_size, true, INK, words);
@@ -820,7 +813,7 @@ static void add_heading(struct view *v, const char *words)
 static void add_plies(struct view *v)
 {
   const struct dea_layout *l = v->layout;
-  add_heading(v, "Plies, from top to bottom");
+  add_heading(v, l->ply_count, "Plies, from top to bottom");
   for (size_t i = l->ply_count; i-- > 0;) {
     const struct dea_layout_ply *ply = &l->plies[i];
     const struct style style = ply_style(l, i);
@@ -837,9 +830,8 @@ static void add_plies(struct view *v)
 static void add_channels(struct view *v)
 {
   const struct dea_layout *l = v->layout;
-  if (l->electrode_count > 0) {
-    add_heading(v, "Electrodes, by channel; they have no stiffness but that of plies");
-  }
+  add_heading(v, l->electrode_count,
+              "Electrodes, by channel; they have no stiffness but that of plies");
   for (size_t c = 0; c < l->channel_count; c++) {
     const struct style style = channel_style(c);
     const struct dea_layout_channel *channel = &l->channels[c];
@@ -877,9 +869,7 @@ static const char *hold_of(const struct dea_layout_support *s)
 static void add_supports(struct view *v)
 {
   const struct dea_layout *l = v->layout;
-  if (l->support_count > 0) {
-    add_heading(v, "Supports");
-  }
+  add_heading(v, l->support_count, "Supports");
   for (size_t i = 0; i < l->support_count; i++) {
     const struct dea_layout_support *s = &l->supports[i];
     const struct style style = support_style(s);
@@ -899,9 +889,7 @@ static void add_supports(struct view *v)
 static void add_bodies_and_pressures(struct view *v)
 {
   const struct dea_layout *l = v->layout;
-  if (l->body_count > 0) {
-    add_heading(v, "Rigid bodies");
-  }
+  add_heading(v, l->body_count, "Rigid bodies");
   for (size_t i = 0; i < l->body_count; i++) {
     const struct dea_layout_body *b = &l->bodies[i];
     if (b->mass_kg > 0) {
@@ -910,9 +898,7 @@ static void add_bodies_and_pressures(struct view *v)
       add_key(v, &body_style, "%.60s", b->name);
     }
   }
-  if (l->pressure_count > 0) {
-    add_heading(v, "Pressures");
-  }
+  add_heading(v, l->pressure_count, "Pressures");
   for (size_t i = 0; i < l->pressure_count; i++) {
     const struct dea_layout_pressure *p = &l->pressures[i];
     char what[60];
@@ -925,9 +911,7 @@ static void add_bodies_and_pressures(struct view *v)
     add_key(v, &pressure_style, "%.40s, %s on the %s of %.40s", l->regions[p->region].name, what,
             p->top ? "top" : "bottom", l->plies[p->ply].name);
   }
-  if (l->contact_count > 0) {
-    add_heading(v, "Contacts");
-  }
+  add_heading(v, l->contact_count, "Contacts");
   for (size_t i = 0; i < l->contact_count; i++) {
     const struct dea_layout_contact *c = &l->contacts[i];
     char what[60];
@@ -944,9 +928,7 @@ static void add_bodies_and_pressures(struct view *v)
 static void add_monitors(struct view *v)
 {
   const struct dea_layout *l = v->layout;
-  if (l->monitor_count > 0) {
-    add_heading(v, "Monitors");
-  }
+  add_heading(v, l->monitor_count, "Monitors");
   for (size_t i = 0; i < l->monitor_count; i++) {
     char number[24];
     double x = margin + v->column * 0.5 * (page_width - 2 * margin);
@@ -963,7 +945,7 @@ static void add_symmetry(struct view *v)
   if (mirror_lines(s) == 0) {
     return;
   }
-  add_heading(v, "Symmetry");
+  add_heading(v, 1, "Symmetry");
   if (s->order == 0) {
     add_key(v, &style, "symmetric to every line there");
   } else {

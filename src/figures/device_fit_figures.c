@@ -1,4 +1,5 @@
 /* Figures of a fit of a device: measurements with the model and its band, residuals below. */
+#include "base/sort.h"
 #include "figures/fit_figures.h"
 #include "result/figure.h"
 
@@ -33,12 +34,6 @@ static bool spans_decades(const struct dea_device_fit *fit, int column)
     }
   }
   return first > 0 && last > 30 * first;
-}
-
-static int rising(const void *a, const void *b)
-{
-  const struct place *x = a, *y = b;
-  return (x->at > y->at) - (x->at < y->at);
 }
 
 /* What is drawn of one curve. */
@@ -102,7 +97,7 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
     places[i] =
         (struct place){is_in_time(curve) ? curve->time_s[i] : 1e-3 * curve->voltage_V[i], i};
   }
-  qsort(places, curve->rows, sizeof *places, rising);
+  qsort(places, curve->rows, sizeof *places, dea_rising);
   dea_status status = add_series(ctx, plot, curve, number, &look);
   if (status == DEA_OK) {
     fill(curve, places, &look);

@@ -1,5 +1,4 @@
-// X(name): every figure that is no study's is figure_<name>.c with `const struct dea_figure
-// dea_figure_<name>`.
+// X(name): every figure that is no study's, `const struct dea_figure dea_figure_<name>`.
 #define DEA_FIGURE_LIST(X)                                                                         \
   X(displacement)                                                                                  \
   X(stretch)                                                                                       \

@@ -1,6 +1,8 @@
 /* Displacement out of the plane along two diameters: along the first fibre, and between it and the
  * next. */
-#include "figures/colour_map.h"
+#include "figures/surface_lattice.h"
+#include "result/figure.h"
+#include "result/trust.h"
 
 #include <math.h>
 #include <stdio.h>

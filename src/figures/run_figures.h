@@ -1,5 +1,5 @@
-/* Drawing the figures of a run: those of figure_list.h, each a file figure_<name>.c that defines
- * one `const struct dea_figure`, and those of the studies. */
+/* Drawing the figures of a run: those of figure_list.h, each a `const struct dea_figure`, and
+ * those of the studies. */
 #pragma once
 
 #include "plot/plot.h"
@@ -28,3 +28,8 @@ struct dea_figure_options {
 dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
                              const char *directory, const struct dea_figure_options *options,
                              size_t *drawn);
+
+/* Range of colours for displacements between two values, and the palette: from dark blue over grey
+ * to light yellow around 0 when both signs matter, else from dark to light: lightness rises all the
+ * way, so that the sign is there in grey too. Unit of the colours: um. */
+void dea_figure_add_palette(struct dea_text *gp, double low_m, double high_m);

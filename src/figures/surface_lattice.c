@@ -1,13 +1,63 @@
 #include "figures/surface_lattice.h"
 
 #include "base/quadrature.h"
+#include "base/sort.h"
 #include "result/field_mesh.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { PIECES_MAX = 12, OUTLINE_PIECES = 4 };
+
+bool dea_surface_is_first(const struct dea_result *result, size_t i)
+{
+  return strcmp(result->surfaces[i].model, result->surfaces[0].model) == 0;
+}
+
+size_t dea_surface_spread(const struct dea_result *result, size_t max,
+                          const struct dea_surface_record *out[])
+{
+  size_t count = 0, seen = 0, taken = 0;
+  for (size_t i = 0; i < result->surface_count; i++) {
+    count += dea_surface_is_first(result, i);
+  }
+  size_t wanted = count < max ? count : max;
+  for (size_t i = 0; i < result->surface_count && taken < wanted; i++) {
+    if (dea_surface_is_first(result, i) &&
+        seen++ == (wanted > 1 ? taken * (count - 1) / (wanted - 1) : count - 1)) {
+      out[taken++] = &result->surfaces[i];
+    }
+  }
+  return taken;
+}
+
+static bool same_mesh(const struct dea_field_mesh *a, const struct dea_field_mesh *b)
+{
+  return a->point_count == b->point_count && a->cell_count == b->cell_count &&
+         memcmp(a->X, b->X, 3 * a->point_count * sizeof *a->X) == 0;
+}
+
+size_t dea_surface_spread_same(const struct dea_result *result, size_t max,
+                               const struct dea_surface_record *out[])
+{
+  const size_t count = dea_surface_spread(result, max, out);
+  size_t same = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (same_mesh(out[i]->mesh, out[0]->mesh)) {
+      out[same++] = out[i];
+    }
+  }
+  return same;
+}
+
+bool dea_surface_has_shapes(const struct dea_surface_record *record)
+{
+  char first[32];
+  snprintf(first, sizeof first, DEA_SHAPE_FIELD, 1);
+  return dea_field_mesh_find(record->mesh, first) != NULL;
+}
 
 static const double *displacement_of(const struct dea_field_mesh *mesh)
 {
@@ -322,12 +372,6 @@ struct crossing {
   double s, z;
 };
 
-static int by_s(const void *a, const void *b)
-{
-  const struct crossing *p = a, *q = b;
-  return (p->s > q->s) - (p->s < q->s);
-}
-
 /* Where the line from p to q of a lattice meets the diameter; false when it does not. A point on
  * the diameter counts for the line that ends there. */
 static bool cross(const double *p, const double *q, const double centre_m[2],
@@ -392,7 +436,7 @@ dea_status dea_surface_lattice_section(struct dea_context *ctx,
   }
   find_crossings(drawing, direction, found);
   if (all > 0) {
-    qsort(found, all, sizeof *found, by_s);
+    qsort(found, all, sizeof *found, dea_rising);
   }
   for (size_t i = 0; i < all; i++) { // one a place
     if (kept == 0 || found[i].s - found[kept - 1].s > 1e-6 * drawing->radius_m) {

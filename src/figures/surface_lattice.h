@@ -2,7 +2,18 @@
  * elements of the part that was computed and their mirrored copies. */
 #pragma once
 
-#include "result/field_mesh.h"
+#include "result/result.h"
+
+/* Whether the i-th surface is of the first model with surfaces, which figures show. */
+bool dea_surface_is_first(const struct dea_result *result, size_t i);
+/* Up to `max` of them from first to last, evenly; returns their number. */
+size_t dea_surface_spread(const struct dea_result *result, size_t max,
+                          const struct dea_surface_record *out[]);
+/* Those of them that are on the mesh of the first. */
+size_t dea_surface_spread_same(const struct dea_result *result, size_t max,
+                               const struct dea_surface_record *out[]);
+/* Whether it has shapes of modes. */
+bool dea_surface_has_shapes(const struct dea_surface_record *record);
 
 /* Columns of a point: place in the stretched flat film, displacement [m]. */
 enum {

@@ -1,7 +1,7 @@
 #include "io/checkpoint.h"
 
 #include "base/write_file.h"
-#include "figures/colour_map.h"
+#include "figures/surface_lattice.h"
 #include "io/results_h5.h"
 #include "io/state_file.h"
 #include "io/vtu.h"
@@ -10,12 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-struct dea_keep {
-  char *directory; // owned
-  bool refused;
-  struct dea_checkpoint_sink sink;
-};
 
 // Names ------------------------------------------------------------------------------------------
 
@@ -58,33 +52,32 @@ void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const
 
 // Fields -----------------------------------------------------------------------------------------
 
+static bool is_there(struct dea_context *ctx, const char *directory, const char *name)
+{
+  char *path = dea_path_join(ctx, directory, name);
+  const bool there = path != NULL && dea_path_exists(path);
+  dea_free(ctx, path);
+  return there;
+}
+
 /* Lines up the files that are there. */
 static dea_status write_pvd(struct dea_context *ctx, const char *directory, const char *model,
                             const struct dea_curve *curve)
 {
+  char name[NAME_SIZE];
   size_t count = 0;
   struct dea_pvd_entry *entries = dea_alloc(ctx, curve->count, sizeof *entries);
-  dea_status status = entries != NULL ? DEA_OK : DEA_E_MEMORY;
-  for (size_t i = 0; i < curve->count && status == DEA_OK; i++) {
-    char name[NAME_SIZE];
+  for (size_t i = 0; i < curve->count && entries != NULL; i++) {
     field_name(model, i, name);
-    char *path = dea_path_join(ctx, directory, name);
-    if (path == NULL) {
-      status = DEA_E_MEMORY;
-    } else if (dea_path_exists(path)) {
+    if (is_there(ctx, directory, name)) {
       entries[count].voltage_V = curve->points[i].voltage_V;
       snprintf(entries[count++].file, sizeof entries[0].file, "%.79s", name);
     }
-    dea_free(ctx, path);
   }
-  char name[NAME_SIZE];
   pvd_name(model, name);
-  char *path = status == DEA_OK ? dea_path_join(ctx, directory, name) : NULL;
-  if (path != NULL) {
-    status = dea_pvd_write(ctx, entries, count, path);
-  } else {
-    status = DEA_E_MEMORY;
-  }
+  char *path = dea_path_join(ctx, directory, name);
+  const bool no_memory = entries == NULL || path == NULL || dea_context_status(ctx) == DEA_E_MEMORY;
+  const dea_status status = no_memory ? DEA_E_MEMORY : dea_pvd_write(ctx, entries, count, path);
   dea_free(ctx, path);
   dea_free(ctx, entries);
   return status;
@@ -186,38 +179,11 @@ static dea_status keep_point(struct dea_context *ctx, void *user, const struct d
   return status;
 }
 
-dea_status dea_checkpoint_create(struct dea_context *ctx, const char *directory,
-                                 struct dea_keep **out)
+void dea_checkpoint_begin(struct dea_keep *keep, const char *directory)
 {
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  (*out)->directory = dea_copy_text(ctx, directory, strlen(directory));
-  if ((*out)->directory == NULL) {
-    dea_free(ctx, *out);
-    *out = NULL;
-    return DEA_E_MEMORY;
-  }
-  (*out)->sink = (struct dea_checkpoint_sink){
-      .user = *out, .restore = restore, .refuse = refuse, .point = keep_point};
-  return DEA_OK;
-}
-
-void dea_checkpoint_destroy(struct dea_context *ctx, struct dea_keep *keep)
-{
-  if (keep != NULL) {
-    dea_free(ctx, keep->directory);
-    dea_free(ctx, keep);
-  }
-}
-
-bool dea_checkpoint_refused(const struct dea_keep *keep)
-{
-  return keep != NULL && keep->refused;
-}
-
-const struct dea_checkpoint_sink *dea_checkpoint_get_sink(const struct dea_keep *keep)
-{
-  return &keep->sink;
+  *keep = (struct dea_keep){
+      .directory = directory,
+      .sink = {.user = keep, .restore = restore, .refuse = refuse, .point = keep_point}};
 }
 
 // Going on ---------------------------------------------------------------------------------------

@@ -7,19 +7,17 @@
 /* The name of the folder of fields within a run folder. */
 #define DEA_FIELD_FOLDER "fields"
 
-struct dea_keep;
+struct dea_keep {
+  const char *directory; // lent; NULL: nothing is kept
+  bool refused; // a model could not go on from its state: the folder is another run's then and has
+                // to stay as it is
+  /* For the services of a run. Models that are quick (without fields or a state) leave nothing on
+   * the way; a model whose curve has points starts from its state in the folder. */
+  struct dea_checkpoint_sink sink;
+};
 
-/* For a run into a folder that exists. directory: copied. out: owned by the caller. */
-dea_status dea_checkpoint_create(struct dea_context *ctx, const char *directory,
-                                 struct dea_keep **out);
-void dea_checkpoint_destroy(struct dea_context *ctx, struct dea_keep *keep);
-/* For the services of a run; lent. Models that are quick (without fields or a state) leave nothing
- * on the way; a model whose curve has points starts from its state in the folder. */
-const struct dea_checkpoint_sink *dea_checkpoint_get_sink(const struct dea_keep *keep);
-
-/* Whether a model could not go on from its state: the folder is another run's then and has to stay
- * as it is. NULL is fine. */
-bool dea_checkpoint_refused(const struct dea_keep *keep);
+/* For a run into a folder that exists. keep: stays where it is while the sink is used. */
+void dea_checkpoint_begin(struct dea_keep *keep, const char *directory);
 
 /* Brings the sweeps of models that left a state in the folder, up to the point of that state, into
  * a result that has its design: they go on from there. DEA_E_IO when there is no such run or it

@@ -131,8 +131,9 @@ dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *
   return end_sheet(&s, directory, curve->model, curve->kind, "");
 }
 
-dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve *curve,
-                                const char *directory)
+/* Nothing without any. */
+static dea_status write_events(struct dea_context *ctx, const struct dea_curve *curve,
+                               const char *directory)
 {
   struct sheet s;
   DEA_TRY(ctx, begin_sheet(ctx, &s));
@@ -180,8 +181,10 @@ static void add_profile(struct dea_text *text, const char *name,
   }
 }
 
-dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_result *result,
-                                  const char *model, const char *study, const char *directory)
+/* All profiles of one model, one below the other. Of a study ("": none) those of its variants with
+ * their names in front. Nothing when there is none. */
+static dea_status write_profiles(struct dea_context *ctx, const struct dea_result *result,
+                                 const char *model, const char *study, const char *directory)
 {
   const bool of_study = study[0] != '\0';
   struct sheet s;
@@ -222,8 +225,9 @@ static void add_variant(struct sheet *s, bool meshes, const struct dea_variant *
   }
 }
 
-dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
-                                  const char *model, const char *study, const char *directory)
+/* All points of all variants of a study, with name and mesh of the variant in front. */
+static dea_status write_variants(struct dea_context *ctx, const struct dea_result *result,
+                                 const char *model, const char *study, const char *directory)
 {
   struct sheet s;
   bool meshes = false;
@@ -289,8 +293,8 @@ static void add_table_row(struct dea_text *text, const struct dea_result_table *
   dea_text_add(text, "\n");
 }
 
-dea_status dea_csv_write_table(struct dea_context *ctx, const struct dea_result_table *table,
-                               const char *directory)
+static dea_status write_table(struct dea_context *ctx, const struct dea_result_table *table,
+                              const char *directory)
 {
   struct dea_text text = {.ctx = ctx};
   char name[DEA_RESULT_TABLE_FILE_SIZE];
@@ -313,6 +317,43 @@ void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESUL
 {
   snprintf(out, DEA_RESULT_TABLE_FILE_SIZE, "%s_%s_%s.csv", table->model, table->type.study,
            table->type.name);
+}
+
+/* Whether a variant is the first of its model and study. */
+static bool first_of_study(const struct dea_result *result, size_t i)
+{
+  const struct dea_curve *curve = &result->variants[i].curve;
+  for (size_t k = 0; k < i; k++) {
+    if (dea_variant_is(&result->variants[k], curve->model, curve->kind)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+dea_status dea_csv_write(struct dea_context *ctx, const struct dea_result *result,
+                         const char *directory)
+{
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  for (size_t i = 0; i < result->curve_count; i++) {
+    DEA_TRY(ctx, dea_csv_write_curve(ctx, &result->curves[i], directory));
+    DEA_TRY(ctx, write_events(ctx, &result->curves[i], directory));
+  }
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
+  for (size_t m = 0; m < count; m++) {
+    DEA_TRY(ctx, write_profiles(ctx, result, models[m], "", directory));
+  }
+  for (size_t i = 0; i < result->variant_count; i++) {
+    if (first_of_study(result, i)) {
+      const struct dea_curve *curve = &result->variants[i].curve;
+      DEA_TRY(ctx, write_variants(ctx, result, curve->model, curve->kind, directory));
+      DEA_TRY(ctx, write_profiles(ctx, result, curve->model, curve->kind, directory));
+    }
+  }
+  for (size_t i = 0; i < result->table_count; i++) {
+    DEA_TRY(ctx, write_table(ctx, &result->tables[i], directory));
+  }
+  return DEA_OK;
 }
 
 bool dea_csv_has(const struct dea_result *result)

@@ -13,25 +13,14 @@ void dea_column_title(const struct dea_column *column, char *out, size_t size);
  * empty field. Digits: 12 significant. Columns "... std" come last, where they are known. */
 dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *curve,
                                const char *directory);
-/* Writes directory/MODEL_KIND_events.csv for a curve with events; nothing without any. */
-dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve *curve,
-                                const char *directory);
-/* Writes directory/MODEL_profiles.csv: all profiles of one model, one below the other, with the
- * voltage as first column. Of a study ("": none) MODEL_STUDY_profiles.csv, those of its variants
- * with their names in front. Nothing when there is none. */
-dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_result *result,
-                                  const char *model, const char *study, const char *directory);
-
-/* Writes directory/MODEL_STUDY.csv: all points of all variants of a study, with name and mesh of
- * the variant in front. Nothing when the model has none. */
-dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
-                                  const char *model, const char *study, const char *directory);
-/* Writes directory/MODEL_STUDY_TABLE.csv of a table that is for CSV; else nothing. */
-dea_status dea_csv_write_table(struct dea_context *ctx, const struct dea_result_table *table,
-                               const char *directory);
+/* Writes all tables of a result: curves, their events (MODEL_KIND_events.csv), profiles
+ * (MODEL_profiles.csv), variants of studies (MODEL_STUDY.csv) with their profiles, and the tables
+ * of studies that are for CSV. */
+dea_status dea_csv_write(struct dea_context *ctx, const struct dea_result *result,
+                         const char *directory);
 /* Whether a result has anything that is written as CSV. */
 bool dea_csv_has(const struct dea_result *result);
-/* The name of that file. */
+/* The name of the file of a table of a study. */
 enum { DEA_RESULT_TABLE_FILE_SIZE = 3 * DEA_NAME_SIZE + 8 };
 void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESULT_TABLE_FILE_SIZE]);
 
@@ -43,11 +32,11 @@ struct dea_measurement {
   const char *file;           // interned
 };
 
-/* Reads a table of measurements as the reader of text tables finds it (table/fields.h): its titles
- * are headers or keys of DEA_LOAD_POINT_LIST (or a common name of it, "voltage", "stretch") with
- * their units; a key with unit ("centre_z_m") needs none. " std" after the name marks the standard
- * uncertainty. An empty field is a missing value. A voltage column is needed. All errors become
- * findings with file:line:column; DEA_E_IO then. out: owned by the caller. */
+/* Reads a table of measurements as the reader of text tables finds it (table/csv_text.h): its
+ * titles are headers or keys of DEA_LOAD_POINT_LIST (or a common name of it, "voltage", "stretch")
+ * with their units; a key with unit ("centre_z_m") needs none. " std" after the name marks the
+ * standard uncertainty. An empty field is a missing value. A voltage column is needed. All errors
+ * become findings with file:line:column; DEA_E_IO then. out: owned by the caller. */
 dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
                                 struct dea_measurement **out);
 void dea_measurement_destroy(struct dea_context *ctx, struct dea_measurement *measurement);

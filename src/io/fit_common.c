@@ -2,7 +2,7 @@
 
 #include "base/version.h"
 #include "base/write_file.h"
-#include "plot/gnuplot.h"
+#include "plot/plot.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -75,80 +75,77 @@ static void exchange_values(struct h5 *h, hid_t group, const struct dea_result_t
   dea_free(h->ctx, values);
 }
 
-// Writing ----------------------------------------------------------------------------------------
+// Columns ----------------------------------------------------------------------------------------
 
-enum { COLUMN_NAME_SIZE = 32 };
-
-/* Name of the attribute with the key of a column of monitors, whose number is of this context. */
-static void name_column(double number, char out[COLUMN_NAME_SIZE])
+/* A text that, when it is read, lives as long as the context. */
+static void exchange_name(struct h5 *h, hid_t object, const char *name, const char **text)
 {
-  snprintf(out, COLUMN_NAME_SIZE, "column_%.0f", number);
+  char read[256];
+  if (!h->reading) {
+    dea_h5_write_text(h, object, name, or_empty(*text));
+    return;
+  }
+  dea_h5_get_text(h, object, name, read, sizeof read);
+  *text = h->status == DEA_OK ? dea_intern(h->ctx, read) : "";
+  h->status = *text == NULL ? DEA_E_MEMORY : h->status;
 }
 
-/* Keys of the columns of monitors that rows are of. */
-static void write_keys(struct h5 *h, hid_t set, const struct dea_result_table *table, size_t column)
+/* What an array says of its column beside key, unit and meaning. */
+static void exchange_column(struct h5 *h, hid_t set, struct dea_result_column *c)
 {
-  char name[COLUMN_NAME_SIZE];
-  for (size_t row = 0; row < table->row_count; row++) {
-    const double number = dea_result_table_cell(table, row, column)->number;
-    name_column(number, name);
-    if (number >= DEA_LOAD_POINT_COLUMNS && H5Aexists(set, name) <= 0) {
-      dea_h5_write_text(h, set, name, dea_column_at(h->ctx, (int)number)->key);
-    }
+  c->kind = (enum dea_cell_kind)dea_h5_int(h, set, "kind", (long long)c->kind, DEA_CELL_NUMBER,
+                                           DEA_CELL_POINTS);
+  c->list = dea_h5_int(h, set, "list", c->list, 0, 1) != 0;
+  c->null = dea_h5_int(h, set, "null", c->null, 0, 1) != 0;
+  c->hidden = (int)dea_h5_int(h, set, "hidden", c->hidden, 0, 255);
+  exchange_name(h, set, "title", &c->title);
+  exchange_name(h, set, "display_unit", &c->display_unit);
+  c->factor = dea_h5_real(h, set, "display_factor", c->factor);
+}
+
+/* Of a cell that says a column of monitors, whose number is of this context, an attribute
+ * "column_N" of the array has the key. */
+static void exchange_key(struct h5 *h, hid_t set, struct dea_cell *cell)
+{
+  char name[32], key[DEA_ERROR_KEY_SIZE];
+  snprintf(name, sizeof name, "column_%.0f", cell->number);
+  if (!(cell->number >= DEA_LOAD_POINT_COLUMNS)) {
+    return;
+  }
+  if (h->reading) {
+    dea_h5_get_text(h, set, name, key, sizeof key);
+    cell->number = h->status == DEA_OK ? dea_column_find(h->ctx, key) : -1;
+  } else if (H5Aexists(set, name) <= 0) {
+    dea_h5_write_text(h, set, name, dea_column_at(h->ctx, (int)cell->number)->key);
   }
 }
 
-static void write_column(struct h5 *h, hid_t group, const struct dea_result_table *table,
-                         size_t column)
+static void exchange_keys(struct h5 *h, hid_t set, const struct dea_result_table *table,
+                          size_t column)
 {
-  const struct dea_result_column *c = &table->type.columns[column];
-  exchange_values(h, group, table, column);
-  hid_t set = dea_h5_array_open(h, group, c->key);
-  dea_h5_write_int(h, set, "column", (long long)column);
-  dea_h5_write_int(h, set, "kind", c->kind);
-  dea_h5_write_int(h, set, "list", c->list);
-  dea_h5_write_int(h, set, "null", c->null);
-  dea_h5_write_int(h, set, "hidden", c->hidden);
-  dea_h5_write_text(h, set, "title", or_empty(c->title));
-  dea_h5_write_text(h, set, "display_unit", c->display_unit != NULL ? c->display_unit : "1");
-  dea_h5_write_real(h, set, "display_factor", c->factor > 0 ? c->factor : 1);
-  if (c->kind == DEA_CELL_QUANTITY) {
-    write_keys(h, set, table, column);
-  }
-  dea_h5_close(set);
-}
-
-void dea_results_h5_write_table(struct h5 *h, hid_t group, const struct dea_result_table *table)
-{
-  const struct dea_result_table_type *type = &table->type;
-  dea_h5_write_text(h, group, "study", type->study);
-  dea_h5_write_text(h, group, "name", type->name);
-  dea_h5_write_text(h, group, "key", or_empty(type->key));
-  dea_h5_write_text(h, group, "title", or_empty(type->title));
-  dea_h5_write_int(h, group, "where", type->where);
-  dea_h5_write_int(h, group, "one_row", type->one_row);
-  dea_h5_write_text(h, group, "quantity",
-                    table->quantity >= 0 ? dea_point_columns[table->quantity].key : "");
-  dea_h5_write_int(h, group, "width", (long long)table->width);
-  dea_h5_write_int(h, group, "count", (long long)table->row_count);
-  for (size_t c = 0; c < type->column_count && table->row_count > 0; c++) {
-    write_column(h, group, table, c);
+  const bool of_columns = table->type.columns[column].kind == DEA_CELL_QUANTITY;
+  for (size_t row = 0; row < table->row_count && of_columns && h->status == DEA_OK; row++) {
+    exchange_key(h, set, (struct dea_cell *)dea_result_table_cell(table, row, column));
   }
 }
 
-// Reading ----------------------------------------------------------------------------------------
-
-static const char *get_name(struct h5 *h, hid_t object, const char *name)
+static void write_columns(struct h5 *h, hid_t group, const struct dea_result_table *table)
 {
-  char text[256];
-  dea_h5_get_text(h, object, name, text, sizeof text);
-  const char *kept = h->status == DEA_OK ? dea_intern(h->ctx, text) : "";
-  h->status = kept == NULL ? DEA_E_MEMORY : h->status;
-  return kept;
+  for (size_t k = 0; k < table->type.column_count && table->row_count > 0; k++) {
+    struct dea_result_column c = table->type.columns[k];
+    c.display_unit = c.display_unit != NULL ? c.display_unit : "1";
+    c.factor = c.factor > 0 ? c.factor : 1;
+    exchange_values(h, group, table, k);
+    hid_t set = dea_h5_array_open(h, group, c.key);
+    dea_h5_write_int(h, set, "column", (long long)k);
+    exchange_column(h, set, &c);
+    exchange_keys(h, set, table, k);
+    dea_h5_close(set);
+  }
 }
 
-/* Columns of a group by their numbers, in memory of their own. */
-static void get_columns(struct h5 *h, hid_t group, struct dea_result_column *columns, size_t count)
+/* By their numbers, in memory of their own. */
+static void read_columns(struct h5 *h, hid_t group, struct dea_result_column *columns, size_t count)
 {
   for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
     char key[DEA_NAME_SIZE];
@@ -157,15 +154,9 @@ static void get_columns(struct h5 *h, hid_t group, struct dea_result_column *col
     struct dea_result_column *c =
         &columns[dea_h5_int(h, set, "column", 0, 0, (long long)count - 1)];
     c->key = h->status == DEA_OK ? dea_intern(h->ctx, key) : "";
-    c->kind = (enum dea_cell_kind)dea_h5_int(h, set, "kind", 0, DEA_CELL_NUMBER, DEA_CELL_POINTS);
-    c->list = dea_h5_int(h, set, "list", 0, 0, 1) != 0;
-    c->null = dea_h5_int(h, set, "null", 0, 0, 1) != 0;
-    c->hidden = (int)dea_h5_int(h, set, "hidden", 0, 0, 255);
-    c->title = get_name(h, set, "title");
-    c->si_unit = get_name(h, set, "unit");
-    c->meaning = get_name(h, set, "meaning");
-    c->display_unit = get_name(h, set, "display_unit");
-    c->factor = dea_h5_get_real(h, set, "display_factor");
+    exchange_name(h, set, "unit", &c->si_unit);
+    exchange_name(h, set, "meaning", &c->meaning);
+    exchange_column(h, set, c);
     dea_h5_close(set);
     h->status = c->key == NULL ? DEA_E_MEMORY : h->status;
   }
@@ -176,51 +167,7 @@ static void get_columns(struct h5 *h, hid_t group, struct dea_result_column *col
   }
 }
 
-/* Numbers of monitors' columns in this context, in place of those of who wrote them. */
-static void find_quantities(struct h5 *h, hid_t group, const struct dea_result_table *table,
-                            size_t column)
-{
-  hid_t set = dea_h5_array_open(h, group, table->type.columns[column].key);
-  for (size_t row = 0; row < table->row_count && h->status == DEA_OK; row++) {
-    struct dea_cell *cell = (struct dea_cell *)dea_result_table_cell(table, row, column);
-    char name[COLUMN_NAME_SIZE], key[DEA_ERROR_KEY_SIZE];
-    name_column(cell->number, name);
-    if (cell->number >= DEA_LOAD_POINT_COLUMNS) {
-      dea_h5_get_text(h, set, name, key, sizeof key);
-      cell->number = h->status == DEA_OK ? dea_column_find(h->ctx, key) : -1;
-    }
-  }
-  dea_h5_close(set);
-}
-
-/* A table of `count` rows without values. */
-static struct dea_result_table *add_table(struct h5 *h, hid_t group, const char *model,
-                                          const struct dea_result_column *columns,
-                                          size_t column_count, struct dea_result *result)
-{
-  char quantity[DEA_NAME_SIZE];
-  const struct dea_result_table_type type = {
-      .study = get_name(h, group, "study"),
-      .name = get_name(h, group, "name"),
-      .key = get_name(h, group, "key"),
-      .title = get_name(h, group, "title"),
-      .where = (int)dea_h5_int(h, group, "where", 0, 0, 255),
-      .one_row = dea_h5_int(h, group, "one_row", 0, 0, 1) != 0,
-      .columns = columns,
-      .column_count = column_count,
-  };
-  size_t width = (size_t)dea_h5_int(h, group, "width", 0, 0, DEA_RESULT_TABLE_WIDTH_MAX);
-  struct dea_result_table *table = NULL;
-  dea_h5_get_text(h, group, "quantity", quantity, sizeof quantity);
-  if (h->status == DEA_OK) {
-    h->status = dea_result_add_table(h->ctx, result, &type, model, width, &table);
-  }
-  if (h->status == DEA_OK) {
-    table->type.key = type.key[0] != '\0' ? type.key : NULL;
-    table->quantity = dea_point_column_find(quantity);
-  }
-  return table;
-}
+// Tables -----------------------------------------------------------------------------------------
 
 /* Quantities of rows exist in this version. */
 static void check_quantities(struct h5 *h, const struct dea_result *result,
@@ -242,37 +189,69 @@ static void check_quantities(struct h5 *h, const struct dea_result *result,
   }
 }
 
-void dea_results_h5_get_table(struct h5 *h, hid_t group, const char *model,
-                              struct dea_result *result)
+/* Rows of a table that is there without any. */
+static void read_rows(struct h5 *h, hid_t group, size_t count, const struct dea_result *result,
+                      struct dea_result_table *table)
 {
   static const double none[DEA_RESULT_TABLE_WIDTH_MAX] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   struct dea_result_table_value empty[DEA_RESULT_TABLE_COLUMNS_MAX];
-  size_t column_count = dea_h5_link_count(h, group);
-  size_t rows = (size_t)dea_h5_int(h, group, "count", 0, 0, ROWS_MAX);
-  if (h->status == DEA_OK && column_count > DEA_RESULT_TABLE_COLUMNS_MAX) {
-    h->status =
-        dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a table of %zu columns", h->path, column_count);
-  }
-  struct dea_result_column columns[DEA_RESULT_TABLE_COLUMNS_MAX] = {{0}};
-  if (h->status == DEA_OK) {
-    get_columns(h, group, columns, column_count);
-  }
-  struct dea_result_table *table =
-      h->status == DEA_OK ? add_table(h, group, model, columns, column_count, result) : NULL;
-  if (table == NULL) {
-    return;
-  }
-  for (size_t c = 0; c < column_count; c++) {
+  for (size_t c = 0; c < table->type.column_count; c++) {
     empty[c] = (struct dea_result_table_value){.number = NAN, .list = none};
   }
-  for (size_t row = 0; row < rows && h->status == DEA_OK; row++) {
+  for (size_t row = 0; row < count && h->status == DEA_OK; row++) {
     h->status = dea_result_table_add_row(h->ctx, table, empty);
   }
-  for (size_t c = 0; c < column_count && h->status == DEA_OK; c++) {
+  for (size_t c = 0; c < table->type.column_count && h->status == DEA_OK; c++) {
     exchange_values(h, group, table, c);
-    if (columns[c].kind == DEA_CELL_QUANTITY) {
-      find_quantities(h, group, table, c);
-    }
+    hid_t set = dea_h5_array_open(h, group, table->type.columns[c].key);
+    exchange_keys(h, set, table, c);
+    dea_h5_close(set);
   }
   check_quantities(h, result, table);
+}
+
+void dea_results_h5_table(struct h5 *h, hid_t group, const char *model,
+                          const struct dea_result_table *from, struct dea_result *result)
+{
+  struct dea_result_column columns[DEA_RESULT_TABLE_COLUMNS_MAX] = {{0}};
+  struct dea_result_table_type type = {.columns = columns};
+  struct dea_result_table *table = NULL;
+  char quantity[DEA_NAME_SIZE] = "";
+  size_t width = 0, rows = 0;
+  if (from != NULL) {
+    type = from->type;
+    width = from->width;
+    rows = from->row_count;
+    snprintf(quantity, sizeof quantity, "%s",
+             from->quantity >= 0 ? dea_point_columns[from->quantity].key : "");
+  }
+  exchange_name(h, group, "study", &type.study);
+  exchange_name(h, group, "name", &type.name);
+  exchange_name(h, group, "key", &type.key);
+  exchange_name(h, group, "title", &type.title);
+  type.where = (int)dea_h5_int(h, group, "where", type.where, 0, 255);
+  type.one_row = dea_h5_int(h, group, "one_row", type.one_row, 0, 1) != 0;
+  dea_h5_text(h, group, "quantity", quantity, sizeof quantity);
+  width = (size_t)dea_h5_int(h, group, "width", (long long)width, 0, DEA_RESULT_TABLE_WIDTH_MAX);
+  rows = (size_t)dea_h5_int(h, group, "count", (long long)rows, 0, ROWS_MAX);
+  if (from != NULL) {
+    write_columns(h, group, from);
+    return;
+  }
+  type.column_count = dea_h5_link_count(h, group);
+  if (h->status == DEA_OK && type.column_count > DEA_RESULT_TABLE_COLUMNS_MAX) {
+    h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a table of %zu columns", h->path,
+                         type.column_count);
+  }
+  if (h->status == DEA_OK) {
+    read_columns(h, group, columns, type.column_count);
+  }
+  if (h->status == DEA_OK) {
+    h->status = dea_result_add_table(h->ctx, result, &type, model, width, &table);
+  }
+  if (h->status == DEA_OK) {
+    table->type.key = type.key[0] != '\0' ? type.key : NULL;
+    table->quantity = dea_point_column_find(quantity);
+    read_rows(h, group, rows, result, table);
+  }
 }

@@ -4,8 +4,7 @@
 #include "base/h5.h"
 #include "result/result.h"
 
-/* Fills an empty group. */
-void dea_results_h5_write_table(struct h5 *h, hid_t group, const struct dea_result_table *table);
-/* Adds the table of a group to the result; its names are interned in the context. */
-void dea_results_h5_get_table(struct h5 *h, hid_t group, const char *model,
-                              struct dea_result *result);
+/* Both ways: fills an empty group by the table `from`, or (NULL) adds that of the group to the
+ * result, its names interned in the context. */
+void dea_results_h5_table(struct h5 *h, hid_t group, const char *model,
+                          const struct dea_result_table *from, struct dea_result *result);

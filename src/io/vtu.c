@@ -164,7 +164,11 @@ static void add_connectivity(struct dea_bytes *out, const struct grid *grid)
   }
 }
 
-static void add_offsets(struct dea_bytes *out, const struct grid *grid)
+/* What is said of each cell: where its nodes end in the connectivity, VTK's number of its type, the
+ * copy that it is of. */
+enum cell_number { END, TYPE, COPY };
+
+static void add_cell_numbers(struct dea_bytes *out, const struct grid *grid, enum cell_number what)
 {
   int32_t end = 0;
   for (size_t c = 0; c < grid->copies; c++) {
@@ -172,29 +176,12 @@ static void add_offsets(struct dea_bytes *out, const struct grid *grid)
       const struct dea_mesh_block *block = &grid->mesh->blocks[b];
       for (size_t k = 0; k < block->count * cells_of(block); k++) {
         end += cell_type_of(block)->nodes;
-        dea_bytes_add_i32(out, end);
+        if (what == TYPE) {
+          dea_bytes_add_u8(out, cell_type_of(block)->number);
+        } else {
+          dea_bytes_add_i32(out, what == END ? end : (int32_t)c);
+        }
       }
-    }
-  }
-}
-
-static void add_types(struct dea_bytes *out, const struct grid *grid)
-{
-  for (size_t c = 0; c < grid->copies; c++) {
-    for (size_t b = 0; b < grid->mesh->block_count; b++) {
-      const struct dea_mesh_block *block = &grid->mesh->blocks[b];
-      for (size_t k = 0; k < block->count * cells_of(block); k++) {
-        dea_bytes_add_u8(out, cell_type_of(block)->number);
-      }
-    }
-  }
-}
-
-static void add_copies(struct dea_bytes *out, const struct grid *grid)
-{
-  for (size_t c = 0; c < grid->copies; c++) {
-    for (size_t k = 0; k < grid->cells / grid->copies; k++) {
-      dea_bytes_add_i32(out, (int32_t)c);
     }
   }
 }
@@ -237,7 +224,7 @@ static void add_fields(struct file *file, const struct grid *grid, bool of_cells
   }
   if (of_cells) {
     open_array(file, "Int32", "copy", 1);
-    add_copies(&file->data, grid);
+    add_cell_numbers(&file->data, grid, COPY);
     close_array(file);
   }
   dea_text_add(&file->head, "</%s>\n", section);
@@ -254,10 +241,10 @@ static void add_cells(struct file *file, const struct grid *grid)
   add_connectivity(&file->data, grid);
   close_array(file);
   open_array(file, "Int32", "offsets", 1);
-  add_offsets(&file->data, grid);
+  add_cell_numbers(&file->data, grid, END);
   close_array(file);
   open_array(file, "UInt8", "types", 1);
-  add_types(&file->data, grid);
+  add_cell_numbers(&file->data, grid, TYPE);
   close_array(file);
   dea_text_add(&file->head, "</Cells>\n");
 }

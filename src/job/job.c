@@ -62,7 +62,8 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
   if (job->force) {
     dea_run_folder_clear(ctx, working_folder(job));
   }
-  return dea_checkpoint_create(ctx, working_folder(job), &job->keep);
+  dea_checkpoint_begin(&job->keep, working_folder(job));
+  return DEA_OK;
 }
 
 /* Where a design names a model; its file: who runs it has. */
@@ -196,11 +197,10 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   DEA_TRY(ctx, dea_job_check(ctx, job, false, result));
   DEA_TRY(ctx, job->status = open_folder(ctx, job, result));
   *began = true;
-  const struct dea_study_services services = {
-      job->keep != NULL ? dea_checkpoint_get_sink(job->keep) : NULL, &dea_rerun_designs};
+  const struct dea_study_services services = {job->keep.directory != NULL ? &job->keep.sink : NULL,
+                                              &dea_rerun_designs, job->processes};
   const double began_s = dea_clock_s();
-  for (size_t i = 0;
-       i < job->model_count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(job->keep);
+  for (size_t i = 0; i < job->model_count && first != DEA_E_INTERRUPTED && !job->keep.refused;
        i++) {
     dea_status status =
         dea_study_run_with(ctx, job->models[i], job->studies, job->study_count, &services, result);
@@ -248,7 +248,7 @@ static void discard(struct dea_context *ctx, const struct dea_job *job)
 dea_status dea_job_write(struct dea_context *ctx, struct dea_job *job,
                          const struct dea_result *result)
 {
-  if (!has_folder(job) || dea_checkpoint_refused(job->keep)) {
+  if (!has_folder(job) || job->keep.refused) {
     return DEA_OK;
   }
   if (dea_job_folder(job, result) == NULL) {
@@ -273,8 +273,6 @@ dea_status dea_job_write(struct dea_context *ctx, struct dea_job *job,
 
 void dea_job_end(struct dea_context *ctx, struct dea_job *job)
 {
-  dea_checkpoint_destroy(ctx, job->keep);
-  job->keep = NULL;
   dea_folder_unlock(ctx, job->lock);
   job->lock = NULL;
   if (job->made && job->status != DEA_OK) {

@@ -19,7 +19,7 @@ struct dea_job {
                      // NULL: none; owned
   bool made;         // the folder was not there before
   dea_status status; // what dea_job_run gave
-  struct dea_keep *keep;        // of a job that has begun
+  struct dea_keep keep;         // of a job that has begun
   struct dea_folder_lock *lock; // of the folder, until the job ends
 };
 

@@ -5,8 +5,8 @@
 #include "figures/run_figures.h"
 #include "io/checkpoint.h"
 #include "io/csv.h"
-#include "io/export.h"
 #include "io/results_h5.h"
+#include "io/summary.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -17,11 +17,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const struct dea_export *const exports[] = {
-#define EXPORT_ROW(name) &dea_export_##name,
-    DEA_EXPORT_LIST(EXPORT_ROW)
-#undef EXPORT_ROW
-};
+/* Files of every run beside tables, figures and fields: one of that name is not written over
+ * without
+ * --force, and goes before a new run. */
+static const char *const exports[] = {"design.yaml", "summary.json", "results.h5"};
 enum { EXPORT_COUNT = sizeof exports / sizeof exports[0] };
 
 /* A folder of results that is a link would have files removed and written elsewhere. */
@@ -42,9 +41,7 @@ dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory
 {
   // Also a user's own file of such a name would be lost.
   for (size_t i = EXPORT_COUNT; i-- > 0 && !force;) {
-    if (exports[i]->file != NULL) {
-      DEA_TRY(ctx, dea_path_refuse(ctx, directory, exports[i]->file));
-    }
+    DEA_TRY(ctx, dea_path_refuse(ctx, directory, exports[i]));
   }
   if (!force) {
     DEA_TRY(ctx, dea_path_refuse(ctx, directory, DEA_FIGURE_FOLDER));
@@ -128,34 +125,37 @@ static void forget_figures(struct dea_context *ctx, const char *directory)
   dea_free(ctx, folder);
 }
 
+/* MODEL_KIND.csv, MODEL_KIND_events.csv and the like. */
+static void forget_table(struct dea_context *ctx, const char *directory,
+                         const struct dea_curve *curve, const char *outcome)
+{
+  char name[2 * DEA_NAME_SIZE + 32];
+  snprintf(name, sizeof name, "%s_%s%s.csv", curve->model, curve->kind, outcome);
+  dea_path_forget(ctx, directory, name);
+}
+
 void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
 {
+  char name[DEA_RESULT_TABLE_FILE_SIZE];
   struct dea_run *old;
   if (dea_run_read(ctx, directory, &old) == DEA_OK) {
-    for (size_t i = 0; i < old->result->curve_count; i++) {
-      const struct dea_curve *curve = &old->result->curves[i];
-      char name[2 * DEA_NAME_SIZE + 32];
-      snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
-      dea_path_forget(ctx, directory, name);
-      snprintf(name, sizeof name, "%s_%s_events.csv", curve->model, curve->kind);
-      dea_path_forget(ctx, directory, name);
+    const struct dea_result *result = old->result;
+    for (size_t i = 0; i < result->curve_count; i++) {
+      const struct dea_curve *curve = &result->curves[i];
+      forget_table(ctx, directory, curve, "");
+      forget_table(ctx, directory, curve, "_events");
       snprintf(name, sizeof name, "%s_profiles.csv", curve->model);
       dea_path_forget(ctx, directory, name);
       dea_checkpoint_forget(ctx, directory, curve->model, curve->count);
       snprintf(name, sizeof name, "%s_%s", curve->model, curve->kind); // shapes of modes
       dea_checkpoint_forget(ctx, directory, name, curve->count);
     }
-    for (size_t i = 0; i < old->result->variant_count; i++) {
-      const struct dea_curve *curve = &old->result->variants[i].curve;
-      char name[2 * DEA_NAME_SIZE + 32];
-      snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
-      dea_path_forget(ctx, directory, name);
-      snprintf(name, sizeof name, "%s_%s_profiles.csv", curve->model, curve->kind);
-      dea_path_forget(ctx, directory, name);
+    for (size_t i = 0; i < result->variant_count; i++) {
+      forget_table(ctx, directory, &result->variants[i].curve, "");
+      forget_table(ctx, directory, &result->variants[i].curve, "_profiles");
     }
-    for (size_t i = 0; i < old->result->table_count; i++) {
-      char name[DEA_RESULT_TABLE_FILE_SIZE];
-      dea_csv_table_name(&old->result->tables[i], name);
+    for (size_t i = 0; i < result->table_count; i++) {
+      dea_csv_table_name(&result->tables[i], name);
       dea_path_forget(ctx, directory, name);
     }
     dea_run_destroy(ctx, old);
@@ -163,10 +163,25 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
   dea_context_clear(ctx);
   forget_figures(ctx, directory);
   for (size_t i = 0; i < EXPORT_COUNT; i++) {
-    if (exports[i]->file != NULL) {
-      dea_path_forget(ctx, directory, exports[i]->file);
-    }
+    dea_path_forget(ctx, directory, exports[i]);
   }
+}
+
+static dea_status write_exports(struct dea_context *ctx, const struct dea_result *result,
+                                const char *directory)
+{
+  const char *input = result->provenance.input;
+  char *summary;
+  DEA_TRY(ctx, dea_csv_write(ctx, result, directory));
+  DEA_TRY(ctx, input != NULL ? dea_text_file_write(ctx, directory, exports[0], input) : DEA_OK);
+  DEA_TRY(ctx, dea_summary_text(ctx, result, &summary));
+  dea_status status = dea_text_file_write(ctx, directory, exports[1], summary);
+  dea_free(ctx, summary);
+  char *path = dea_path_join(ctx, directory, exports[2]);
+  DEA_TRY(ctx, path != NULL ? status : DEA_E_MEMORY);
+  status = dea_results_h5_write(ctx, result, path);
+  dea_free(ctx, path);
+  return status;
 }
 
 static dea_status write_figures(struct dea_context *ctx, const struct dea_result *result,
@@ -199,9 +214,7 @@ dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result
       dea_run_folder_clear(ctx, directory);
     }
   }
-  for (size_t i = 0; i < EXPORT_COUNT; i++) {
-    DEA_TRY(ctx, exports[i]->write(ctx, result, directory));
-  }
+  DEA_TRY(ctx, write_exports(ctx, result, directory));
   DEA_TRY(ctx, dea_checkpoint_shapes(ctx, result, directory));
   return DEA_CHAIN(ctx, !o->no_figures ? write_figures(ctx, result, directory) : DEA_OK);
 }

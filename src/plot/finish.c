@@ -192,38 +192,22 @@ static dea_status finish_one(struct dea_context *ctx, const char *pictures, cons
   return status;
 }
 
-/* Whether a script draws a format: one of its list, or the one that it names itself. */
-static bool draws(const char *script, const char *outcome)
-{
-  char own[16];
-  size_t length;
-  const char *end, *list = strstr(script, "\nformats = ");
-  snprintf(own, sizeof own, "\".%s\"", outcome);
-  if (list == NULL || strstr(script, "in formats]") == NULL) {
-    return strstr(script, own) != NULL;
-  }
-  list = between(list, "\nformats = \"", "\"", &length, &end);
-  const char *found = list != NULL ? strstr(list, outcome) : NULL;
-  return found != NULL && found < list + length;
-}
-
 /* A gnuplot that ends well and has drawn nothing, on a full disk or as something else of that name.
  */
 static dea_status check_drawn(struct dea_context *ctx, const char *pictures, const char *name,
-                              const char *script)
+                              const char *script, const struct dea_plot_format *format)
 {
   static const char *const outcomes[] = {"svg", "pdf", "png", "gif"};
+  const bool all = strstr(script, "in formats]") != NULL; // else it is an animation
+  const bool wanted[] = {all && format->svg, all && format->pdf, all && format->png, !all};
   dea_status status = DEA_OK;
   for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0] && status == DEA_OK; i++) {
     char file[128], byte;
     size_t length;
-    if (!draws(script, outcomes[i])) {
-      continue;
-    }
     snprintf(file, sizeof file, "%.119s.%s", name, outcomes[i]);
     char *path = dea_path_join(ctx, pictures, file);
     DEA_TRY_MEMORY(path != NULL);
-    if (!dea_file_head(path, &byte, 1, &length) || length == 0) {
+    if (wanted[i] && (!dea_file_head(path, &byte, 1, &length) || length == 0)) {
       status = dea_fail(ctx, DEA_E_TOOL, "gnuplot has drawn nothing into %s", file);
     }
     dea_free(ctx, path);
@@ -232,13 +216,13 @@ static dea_status check_drawn(struct dea_context *ctx, const char *pictures, con
 }
 
 dea_status dea_picture_finish(struct dea_context *ctx, const char *pictures, const char *scripts,
-                              const char *name)
+                              const char *name, const struct dea_plot_format *format)
 {
   char caption[400], *path, *script;
   size_t length;
   dea_status status = read_named(ctx, scripts, name, "gp", &path, &script, &length);
   if (status == DEA_OK) {
-    status = check_drawn(ctx, pictures, name, script != NULL ? script : "");
+    status = check_drawn(ctx, pictures, name, script != NULL ? script : "", format);
   }
   if (status == DEA_OK) {
     read_caption(script != NULL ? script : "", name, caption, sizeof caption);

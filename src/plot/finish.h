@@ -1,13 +1,13 @@
 /* What gnuplot leaves out of its pictures. */
 #pragma once
 
-#include "base/context.h"
+#include "plot/plot.h"
 
 /* Completes NAME.svg and NAME.png in folder `pictures`, where they are there. DEA_E_TOOL where one
- * of the formats that the script draws is missing or empty. scripts: folder of NAME.gp, whose first
+ * of the formats that were asked for is missing or empty. scripts: folder of NAME.gp, whose first
  * line has the caption. */
 dea_status dea_picture_finish(struct dea_context *ctx, const char *pictures, const char *scripts,
-                              const char *name);
+                              const char *name, const struct dea_plot_format *format);
 
 /* An SVG of gnuplot with the caption (plain text) as its title, a list of fonts to fall back on,
  * and facets that overlap a little, so that no seams show between them. *out: owned by the caller

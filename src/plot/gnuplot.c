@@ -1,11 +1,11 @@
+/* Drawing by a gnuplot process. */
 #define _POSIX_C_SOURCE 200809L // unlinkat, renameat, dirfd
-#include "plot/gnuplot.h"
+#include "plot/plot.h"
 
 #include "base/file.h"
 #include "base/program.h"
 #include "base/write_file.h"
 #include "plot/finish.h"
-#include "plot/plot.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -92,12 +92,11 @@ static dea_status empty_folder(struct dea_context *ctx, const char *from, const 
 }
 
 /* Starts a gnuplot for the figures first, first + stride, ... */
-static dea_status launch_some(struct dea_context *ctx, const char *directory, char *folder,
-                              const char *const names[], size_t count, size_t first, size_t stride,
-                              struct dea_program *out)
+static dea_status launch_some(const struct dea_plot_folder *f, char *folder, size_t first,
+                              size_t stride, struct dea_program *out)
 {
-  char **argv = dea_alloc(ctx, count + 5, sizeof *argv);
-  char *scripts = dea_alloc(ctx, count, SCRIPT_MAX);
+  char **argv = dea_alloc(f->ctx, f->count + 5, sizeof *argv);
+  char *scripts = dea_alloc(f->ctx, f->count, SCRIPT_MAX);
   dea_status status = DEA_E_MEMORY;
   if (argv != NULL && scripts != NULL) {
     char program[] = "gnuplot", defaults[] = "-d", execute[] = "-e";
@@ -106,61 +105,56 @@ static dea_status launch_some(struct dea_context *ctx, const char *directory, ch
     argv[1] = defaults; // without the user's start-up files
     argv[2] = execute;
     argv[3] = folder;
-    for (size_t i = first; i < count; i += stride) {
-      snprintf(scripts + SCRIPT_MAX * i, SCRIPT_MAX, "%s.gp", names[i]);
+    for (size_t i = first; i < f->count; i += stride) {
+      snprintf(scripts + SCRIPT_MAX * i, SCRIPT_MAX, "%s.gp", f->names[i]);
       argv[n++] = scripts + SCRIPT_MAX * i;
     }
-    status = launch(ctx, argv, directory, out);
+    status = launch(f->ctx, argv, f->path, out);
   }
-  dea_free(ctx, scripts);
-  dea_free(ctx, argv);
+  dea_free(f->ctx, scripts);
+  dea_free(f->ctx, argv);
   return status;
 }
 
-static dea_status draw(struct dea_context *ctx, const char *directory, const char *drawing,
-                       const char *const names[], size_t count)
+static dea_status draw(const struct dea_plot_folder *f, const char *drawing)
 {
-  struct dea_text folder = {.ctx = ctx};
+  struct dea_text folder = {.ctx = f->ctx};
   struct dea_program drawers[DRAWERS_MAX];
-  size_t wanted = drawer_count(count), running = 0;
+  size_t wanted = drawer_count(f->count), running = 0;
   dea_text_add(&folder, "dea_folder = \"%s/\"", dea_path_name(drawing));
   dea_status status = folder.failed ? DEA_E_MEMORY : DEA_OK;
   while (status == DEA_OK && running < wanted) {
-    status =
-        launch_some(ctx, directory, folder.data, names, count, running, wanted, &drawers[running]);
+    status = launch_some(f, folder.data, running, wanted, &drawers[running]);
     running += status == DEA_OK;
   }
   for (size_t i = 0; i < running; i++) { // all of them, also after a failure
-    dea_status one = finish(ctx, &drawers[i], directory);
+    dea_status one = finish(f->ctx, &drawers[i], f->path);
     status = status == DEA_OK ? one : status;
   }
   dea_text_free(&folder);
   return status;
 }
 
-dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
-                            const char *const names[], size_t count)
+/* The pictures take their names only when they are complete. */
+static dea_status draw_all(const struct dea_plot_folder *f)
 {
-  if (count == 0) {
-    return DEA_OK;
-  }
   char name[40];
   snprintf(name, sizeof name, ".drawing.%ld", (long)getpid());
-  char *drawing = dea_path_join(ctx, directory, name);
+  char *drawing = dea_path_join(f->ctx, f->path, name);
   DEA_TRY_MEMORY(drawing != NULL);
-  dea_status status = dea_folder_create(ctx, drawing);
+  dea_status status = dea_folder_create(f->ctx, drawing);
   if (status == DEA_OK) {
-    status = draw(ctx, directory, drawing, names, count);
-    for (size_t i = 0; i < count && status == DEA_OK; i++) {
-      status = dea_picture_finish(ctx, drawing, directory, names[i]);
+    status = draw(f, drawing);
+    for (size_t i = 0; i < f->count && status == DEA_OK; i++) {
+      status = dea_picture_finish(f->ctx, drawing, f->path, f->names[i], f->format);
     }
     if (status == DEA_OK) {
-      status = empty_folder(ctx, drawing, directory, true);
+      status = empty_folder(f->ctx, drawing, f->path, true);
     } else {
-      empty_folder(ctx, drawing, directory, false);
+      empty_folder(f->ctx, drawing, f->path, false);
     }
   }
-  dea_free(ctx, drawing);
+  dea_free(f->ctx, drawing);
   return status;
 }
 
@@ -189,13 +183,7 @@ dea_status dea_plot_folder_draw(struct dea_plot_folder *folder, dea_status statu
 {
   const struct dea_plot_format *format = folder->format;
   if (status == DEA_OK && folder->count > 0 && (format->svg || format->pdf || format->png)) {
-    const char **names = dea_alloc(folder->ctx, folder->count, sizeof *names);
-    for (size_t i = 0; names != NULL && i < folder->count; i++) {
-      names[i] = folder->names[i];
-    }
-    status = names != NULL ? dea_gnuplot_draw(folder->ctx, folder->path, names, folder->count)
-                           : DEA_E_MEMORY;
-    dea_free(folder->ctx, names);
+    status = draw_all(folder);
   }
   dea_free(folder->ctx, folder->names);
   folder->names = NULL;

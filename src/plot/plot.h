@@ -126,7 +126,7 @@ struct dea_plot_format {
   bool svg, pdf, png;
   double width_m;
 };
-/* The plot as gnuplot draws it (plot/gnuplot.h): writes NAME.gp and NAME.dat into directory. */
+/* The plot as gnuplot draws it: writes NAME.gp and NAME.dat into directory. */
 dea_status dea_plot_write(struct dea_context *ctx, const struct dea_plot *plot,
                           const struct dea_plot_format *format, const char *directory);
 
@@ -143,6 +143,12 @@ dea_status dea_plot_folder_add(struct dea_plot_folder *folder, struct dea_plot *
                                dea_status status);
 /* Has a figure drawn whose script and data are there. */
 dea_status dea_plot_folder_name(struct dea_plot_folder *folder, const char *name);
-/* Draws all in the formats asked for, if any, where status is good, as dea_gnuplot_draw; leaves the
- * folder empty. Returns that status, or its own. */
+/* Draws all in the formats asked for, if any, where status is good; leaves the folder empty.
+ * Returns that status, or its own: DEA_E_TOOL when gnuplot is missing, fails (with what it said) or
+ * draws nothing; the scripts and their data stay. DEA_E_INTERRUPTED after an interruption. */
 dea_status dea_plot_folder_draw(struct dea_plot_folder *folder, dea_status status);
+
+/* Before a folder is written to: removes with `force`, refuses without (DEA_E_IO), a file of that
+ * name and all that a drawing of that name leaves: script, data, pictures. */
+dea_status dea_gnuplot_create_folders(struct dea_context *ctx, const char *directory,
+                                      const char *name, bool force);

@@ -15,16 +15,6 @@ struct view {
   double top, bottom, left, right;
 };
 
-static bool shows(const struct dea_series *series)
-{
-  for (size_t i = 0; i < series->count; i++) {
-    if (isfinite(series->values[i]) && isfinite(series->values[series->count + i])) {
-      return true;
-    }
-  }
-  return false;
-}
-
 struct range {
   double low, high;
 };
@@ -282,8 +272,8 @@ static bool is_known(const struct dea_plot *plot, size_t panel, const struct dea
   for (size_t p = 0; p < panel && !known; p++) {
     for (size_t s = 0; s < plot->panels[p].series_count && !known; s++) {
       const struct dea_series *other = &plot->panels[p].series[s];
-      known = shows(other) && other->style == series->style && other->colour == series->colour &&
-              strcmp(other->title, series->title) == 0;
+      known = dea_series_shows(other) && other->style == series->style &&
+              other->colour == series->colour && strcmp(other->title, series->title) == 0;
     }
   }
   return known;
@@ -297,7 +287,7 @@ static void add_key(struct dea_text *out, const struct dea_plot *plot)
     dashed = plot->panels[p].dashed != NULL ? plot->panels[p].dashed : dashed;
     for (size_t s = 0; s < plot->panels[p].series_count; s++) {
       const struct dea_series *series = &plot->panels[p].series[s];
-      if (series->title[0] == '\0' || !shows(series) || is_known(plot, p, series)) {
+      if (series->title[0] == '\0' || !dea_series_shows(series) || is_known(plot, p, series)) {
         continue;
       }
       dea_text_add(out, "<li><svg class=\"sample\" viewBox=\"0 0 28 14\" aria-hidden=\"true\">");
@@ -357,7 +347,7 @@ static void add_json(struct dea_text *out, const struct dea_panel *panel, const 
   dea_text_add(out, "\",\"series\":[");
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
-    if (series->style == DEA_BAND || series->title[0] == '\0' || !shows(series)) {
+    if (series->style == DEA_BAND || series->title[0] == '\0' || !dea_series_shows(series)) {
       continue;
     }
     dea_text_add(out, "%s{\"t\":\"", first ? "" : ",");
@@ -384,7 +374,8 @@ static void add_panel(struct dea_text *out, const struct dea_panel *panel, const
   dea_text_add(out, "<g clip-path=\"url(#clip%d-%zu)\">", number, p);
   for (int bands = 1; bands >= 0; bands--) { // what is filled lies below
     for (size_t s = 0; s < panel->series_count; s++) {
-      if ((panel->series[s].style == DEA_BAND) == (bands == 1) && shows(&panel->series[s])) {
+      if ((panel->series[s].style == DEA_BAND) == (bands == 1) &&
+          dea_series_shows(&panel->series[s])) {
         add_series(out, v, &panel->series[s]);
       }
     }

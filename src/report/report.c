@@ -63,12 +63,40 @@ static void add_header(struct dea_report *report)
                     "<main id=\"main\">\n");
 }
 
+/* Where a run comes from: enough to make it again. */
+static dea_status add_provenance(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_provenance *p = &run->run->result->provenance;
+  struct dea_text *out = &report->text;
+  dea_section_begin(report, "provenance", run->number, "Provenance");
+  dea_text_add(out, "<dl class=\"facts\">");
+  dea_section_fact(out, "Program", p->program);
+  dea_section_fact(out, "Compiler", p->compiler);
+  dea_section_fact(out, "Build", p->build);
+  dea_section_fact(out, "Libraries", p->libraries);
+  dea_section_fact(out, "Started", p->started);
+  dea_text_add(out, "<dt>Time</dt><dd>");
+  dea_html_number(out, p->wall_s, 3);
+  dea_text_add(out, " s</dd>");
+  dea_section_fact(out, "Command", p->command);
+  dea_section_fact(out, "Run folder", run->path);
+  dea_section_fact(out, "Design file", run->run->design_file);
+  dea_section_fact(out, "SHA-256 of the design", p->input_sha256);
+  dea_section_fact(out, "Overrides", p->overrides);
+  dea_text_add(out, "</dl><details><summary>Design file</summary><div class=\"scroll\" "
+                    "tabindex=\"0\" role=\"region\" aria-label=\"Design file\">");
+  dea_html_element(out, "pre", p->input);
+  dea_text_add(out, "</div></details>");
+  dea_section_end(report);
+  return DEA_OK;
+}
+
 static dea_status add_run(struct dea_report *report, const struct dea_report_run *run)
 {
   static const dea_run_section sections[] = {
       dea_section_glance,  dea_section_design, dea_section_membrane,  dea_section_curves,
       dea_section_limits,  dea_section_map,    dea_section_touch,     dea_section_explorer,
-      dea_section_studies, dea_section_points, dea_section_materials, dea_section_provenance};
+      dea_section_studies, dea_section_points, dea_section_materials, add_provenance};
   bool alone = report->count == 1; // then the page's heading is the run's
   dea_text_add(&report->text, "<article id=\"run-%d\" aria-label=\"Run %d\">", run->number,
                run->number);

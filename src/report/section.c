@@ -26,6 +26,14 @@ void dea_section_heading(struct dea_report *report, const char *text)
                    text);
 }
 
+void dea_section_fact(struct dea_text *out, const char *what, const char *text)
+{
+  if (text != NULL && text[0] != '\0') {
+    dea_text_add(out, "<dt>%s</dt>", what);
+    dea_html_element(out, "dd", text);
+  }
+}
+
 void dea_table_begin(struct dea_report *report, const char *caption, const char *header)
 {
   struct dea_text *out = &report->text;

@@ -23,6 +23,8 @@ void dea_section_begin(struct dea_report *report, const char *name, int number, 
 void dea_section_end(struct dea_report *report);
 /* A heading within a section of a run. */
 void dea_section_heading(struct dea_report *report, const char *text);
+/* A row of a list of facts, where there is a text. */
+void dea_section_fact(struct dea_text *out, const char *what, const char *text);
 /* A table that scrolls sideways: caption, then the header's cells (ours). */
 void dea_table_begin(struct dea_report *report, const char *caption, const char *header);
 /* Ends it, and takes out columns in which no row has anything, but for tables with merged cells. */
@@ -44,7 +46,6 @@ dea_status dea_section_explorer(struct dea_report *report, const struct dea_repo
 dea_status dea_section_limits(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_studies(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_points(struct dea_report *report, const struct dea_report_run *run);
-dea_status dea_section_provenance(struct dea_report *report, const struct dea_report_run *run);
 /* Of the folder of a fit, where the options name one. */
 dea_status dea_section_fit(struct dea_report *report);
 /* Of all runs: curves in one figure, last points in one table. */

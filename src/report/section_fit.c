@@ -18,11 +18,7 @@ static double number_of(const json_t *object, const char *key)
 
 static void add_fact(struct dea_text *out, const char *what, const json_t *root, const char *key)
 {
-  const char *text = json_string_value(json_object_get(root, key));
-  if (text != NULL && text[0] != '\0') {
-    dea_text_add(out, "<dt>%s</dt>", what);
-    dea_html_element(out, "dd", text);
-  }
+  dea_section_fact(out, what, json_string_value(json_object_get(root, key)));
 }
 
 static void add_facts(struct dea_text *out, const json_t *root)

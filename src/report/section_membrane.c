@@ -1,6 +1,6 @@
 /* The film's middle surface at the points of a sweep, as numbers for the page's script: the part
  * that was computed, quantised to 16 bits between the extremes of the sweep, in base64. */
-#include "figures/colour_map.h"
+#include "figures/surface_lattice.h"
 #include "report/section.h"
 #include "result/trust.h"
 
@@ -148,28 +148,15 @@ static void add_mesh(struct dea_text *out, const struct dea_field_mesh *mesh, ui
   dea_text_add(out, "],");
 }
 
-static bool same_mesh(const struct dea_field_mesh *a, const struct dea_field_mesh *b)
-{
-  return a->point_count == b->point_count && a->cell_count == b->cell_count &&
-         memcmp(a->X, b->X, 3 * a->point_count * sizeof *a->X) == 0;
-}
-
-/* As many surfaces as there is room for, evenly, on the mesh of the first. */
+/* As many surfaces as there is room for, evenly. */
 static struct steps choose_steps(const struct dea_result *result)
 {
   struct steps steps = {.count = 0};
-  const struct dea_surface_record *chosen[STEPS_MAX];
-  if (result->surface_count == 0) {
-    return steps;
-  }
-  size_t bytes = 2 * CHANNELS * result->surfaces[0].mesh->point_count;
-  size_t most = BYTES_MAX / (bytes > 0 ? bytes : 1);
-  most = most < 2 ? 2 : most > STEPS_MAX ? STEPS_MAX : most;
-  size_t count = dea_surface_spread(result, most, chosen);
-  for (size_t i = 0; i < count; i++) {
-    if (same_mesh(chosen[i]->mesh, chosen[0]->mesh)) {
-      steps.at[steps.count++] = chosen[i];
-    }
+  if (result->surface_count > 0) {
+    size_t bytes = 2 * CHANNELS * result->surfaces[0].mesh->point_count;
+    size_t most = BYTES_MAX / (bytes > 0 ? bytes : 1);
+    most = most < 2 ? 2 : most > STEPS_MAX ? STEPS_MAX : most;
+    steps.count = dea_surface_spread_same(result, most, steps.at);
   }
   return steps;
 }

@@ -4,8 +4,6 @@
 
 #include "base/context.h"
 
-#include <stdbool.h>
-
 /* A design that can be copied into the folder; both lent. */
 struct dea_studio_example {
   const char *name; // "devices/lens.yaml"
@@ -24,10 +22,8 @@ struct dea_studio_options {
 
 struct dea_studio;
 
-/* What this library was built with: its server (civetweb), its editor (CodeMirror). */
-void dea_studio_parts(bool *server, bool *editor);
-/* Starts to serve. DEA_E_IO where the folder or the port cannot be had, DEA_E_UNSUPPORTED where
- * this library was built without civetweb. out: owned by the caller, NULL on failure. */
+/* Starts to serve. DEA_E_IO where the folder or the port cannot be had. out: owned by the caller,
+ * NULL on failure. */
 dea_status dea_studio_start(struct dea_context *ctx, const struct dea_studio_options *options,
                             struct dea_studio **out);
 /* Where the page is, with the secret that all requests need; lent. */

@@ -45,7 +45,8 @@ bool dea_studio_name_good(const char *name, bool deep)
   }
 }
 
-int dea_studio_open(int folder, const char *name, bool directory)
+/* Opens a regular file to read, or a folder; -1 where there is none. */
+static int open_in(int folder, const char *name, bool directory)
 {
   char part[NAME_MAX_LENGTH + 1];
   int at = dea_studio_name_good(name, true) ? fcntl(folder, F_DUPFD_CLOEXEC, 0) : -1;
@@ -73,7 +74,7 @@ dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name
                            struct dea_bytes *out)
 {
   char chunk[16384];
-  const int file = dea_studio_open(folder, name, false);
+  const int file = open_in(folder, name, false);
   if (file < 0) {
     return dea_fail(ctx, DEA_E_IO, "there is no file %s in the folder", name);
   }
@@ -96,7 +97,7 @@ dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name
 void dea_studio_stamp(int folder, const char *name, char out[DEA_STUDIO_STAMP])
 {
   struct stat file;
-  const int at = dea_studio_open(folder, name, false);
+  const int at = open_in(folder, name, false);
   out[0] = '\0';
   if (at >= 0 && fstat(at, &file) == 0) {
     snprintf(out, DEA_STUDIO_STAMP, "%lld.%09ld-%lld-%llx", (long long)file.st_mtim.tv_sec,
@@ -160,40 +161,45 @@ static int is_shown(const struct dirent *entry)
   return dea_studio_name_good(entry->d_name, false);
 }
 
-json_t *dea_studio_list(int folder)
+/* Calls for each name of a folder that is shown, in their order. */
+static void list_names(int folder, void (*add)(int folder, const char *name, json_t *to),
+                       json_t *to)
 {
   struct dirent **entries = NULL;
-  json_t *lists =
-      json_pack("{s:[], s:[], s:[], s:[], s:[]}", "designs", "runs", "tables", "folders", "sweeps");
   const int count = scandirat(folder, ".", &entries, is_shown, by_name);
   for (int i = 0; i < count; i++) {
     if (i < FILES_MAX) {
-      add_entry(folder, entries[i]->d_name, lists);
+      add(folder, entries[i]->d_name, to);
     }
     free(entries[i]);
   }
   free(entries);
+}
+
+json_t *dea_studio_list(int folder)
+{
+  json_t *lists =
+      json_pack("{s:[], s:[], s:[], s:[], s:[]}", "designs", "runs", "tables", "folders", "sweeps");
+  list_names(folder, add_entry, lists);
   return lists;
+}
+
+static void add_file(int folder, const char *name, json_t *names)
+{
+  struct stat file;
+  if (fstatat(folder, name, &file, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(file.st_mode)) {
+    json_array_append_new(names, json_string(name));
+  }
 }
 
 json_t *dea_studio_list_in(int folder, const char *name)
 {
-  struct dirent **entries = NULL;
-  struct stat file;
-  const int at = dea_studio_open(folder, name, true);
+  const int at = open_in(folder, name, true);
   if (at < 0) {
     return NULL;
   }
   json_t *names = json_array();
-  const int count = scandirat(at, ".", &entries, is_shown, by_name);
-  for (int i = 0; i < count; i++) {
-    if (i < FILES_MAX && fstatat(at, entries[i]->d_name, &file, AT_SYMLINK_NOFOLLOW) == 0 &&
-        S_ISREG(file.st_mode)) {
-      json_array_append_new(names, json_string(entries[i]->d_name));
-    }
-    free(entries[i]);
-  }
-  free(entries);
+  list_names(at, add_file, names);
   close(at);
   return names;
 }

@@ -7,9 +7,7 @@
 
 /* Whether a text is the name of a file in the folder itself, or with `deep` of one below it too. */
 bool dea_studio_name_good(const char *name, bool deep);
-/* Opens a regular file to read, or a folder; -1 where there is none. folder: open. */
-int dea_studio_open(int folder, const char *name, bool directory);
-/* Reads a file of at most max bytes; owned by the caller. DEA_E_IO. */
+/* Reads a file of at most max bytes; owned by the caller. folder: open. DEA_E_IO. */
 dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name, size_t max,
                            struct dea_bytes *out);
 /* What changes when a file is written; "" where there is none. */

@@ -4,8 +4,10 @@
 #include "base/assets.h"
 #include "base/file.h"
 #include "base/write_file.h"
+#include "compare/measured.h"
+#include "job/report_runs.h"
+#include "report/section.h"
 #include "result/provenance.h"
-#include "studio/studio_curves.h"
 #include "studio/studio_files.h"
 
 #include <fcntl.h>
@@ -17,8 +19,21 @@
 
 static const char json_mime[] = "application/json", html_mime[] = "text/html; charset=utf-8";
 
+struct work;
+
+/* A question, and what its answer is of. */
+struct route {
+  const char *method, *path;
+  void (*answer)(struct work *w);
+  const char *type, *bytes; // of a part of the page
+  const size_t *length;
+  const char *command, *option, *ending; // a command, and the file that it writes of a design
+  enum view { CURVES, FILM, SLIDERS } view;
+};
+
 /* What a route works with. */
 struct work {
+  const struct route *route;
   struct dea_context *ctx;
   struct dea_studio_folder *workspace;
   const struct dea_studio_request *request;
@@ -113,35 +128,20 @@ static void add_file(struct dea_studio_line *line, const char *name)
 
 // The page and its parts --------------------------------------------------------------------------
 
-static void get_page(struct work *w)
+static void get_part(struct work *w)
 {
-  respond(w, 200, html_mime, dea_asset_studio_page, dea_asset_studio_page_length);
+  respond(w, 200, w->route->type, w->route->bytes, *w->route->length);
 }
 
-static void get_style(struct work *w)
-{
-  respond(w, 200, "text/css; charset=utf-8", dea_asset_studio_style, dea_asset_studio_style_length);
-}
-
-static void get_script(struct work *w)
-{
-  respond(w, 200, "text/javascript; charset=utf-8", dea_asset_studio_script,
-          dea_asset_studio_script_length);
-}
-
-json_t *dea_studio_state(struct dea_studio_folder *workspace)
-{
-  json_t *state = dea_studio_list(workspace->folder);
-  json_object_set_new(state, "folder", json_string(workspace->path));
-  json_object_set_new(
-      state, "open", json_string(workspace->options->open != NULL ? workspace->options->open : ""));
-  json_object_set_new(state, "jobs", dea_studio_jobs_json(workspace->jobs));
-  return state;
-}
-
+/* What there is: {folder, open, designs, runs, tables, folders, jobs}. */
 static void get_state(struct work *w)
 {
-  respond_json(w, 200, dea_studio_state(w->workspace));
+  const char *open = w->workspace->options->open;
+  json_t *state = dea_studio_list(w->workspace->folder);
+  json_object_set_new(state, "folder", json_string(w->workspace->path));
+  json_object_set_new(state, "open", json_string(open != NULL ? open : ""));
+  json_object_set_new(state, "jobs", dea_studio_jobs_json(w->workspace->jobs));
+  respond_json(w, 200, state);
 }
 
 // Designs and tables ------------------------------------------------------------------------------
@@ -343,25 +343,15 @@ static void query_file(struct work *w, const char *command, const char *design, 
   respond_json(w, 200, json);
 }
 
-static void get_of_design(struct work *w, const char *command, const char *option,
-                          const char *ending)
+static void get_of_design(struct work *w)
 {
+  const struct route *r = w->route;
   const char *name = file_argument(w, "name");
   if (name != NULL && can_write(w, name)) { // a link would lead out
-    query_file(w, command, name, name, option, ending);
+    query_file(w, r->command, name, name, r->option, r->ending);
   } else if (name != NULL) {
     respond_error(w, 404, "there is no such file in this folder");
   }
-}
-
-static void get_check(struct work *w)
-{
-  get_of_design(w, "check", "--svg", "svg");
-}
-
-static void get_mesh(struct work *w)
-{
-  get_of_design(w, "mesh", "-o", "msh");
 }
 
 static void get_schema(struct work *w)
@@ -424,9 +414,129 @@ static void get_compare(struct work *w)
   }
 }
 
-/* Runs as HTML: figures, or one in space or with sliders, as a page of its own. */
-static void show_runs(struct work *w, enum dea_studio_view view)
+// Runs as HTML, by sections of the report
+// ----------------------------------------------------------
+
+enum { RUNS_MAX = 6 };
+
+static dea_status add_sections(struct dea_report *report)
 {
+  DEA_TRY(report->ctx, dea_section_compare(report));
+  if (report->count == 1) {
+    static const dea_run_section sections[] = {dea_section_curves, dea_section_studies,
+                                               dea_section_limits};
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
+      DEA_TRY(report->ctx, sections[i](report, &report->runs[0]));
+    }
+  }
+  return report->text.failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+/* A section of one run as a page of its own with the report's script. */
+static dea_status add_page(struct dea_report *report, dea_run_section section)
+{
+  dea_text_add(&report->text,
+               "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+               "<title>Run</title><style>%s</style></head><body><nav hidden><ul></ul></nav><main>",
+               dea_asset_style);
+  const size_t before = report->text.length;
+  DEA_TRY(report->ctx, section(report, &report->runs[0]));
+  if (report->text.length == before) {
+    dea_text_add(&report->text, "<p>This run has %s.</p>",
+                 section == dea_section_membrane ? "no film in space" : "nothing between points");
+  }
+  dea_text_add(&report->text, "</main><script>%s</script></body></html>\n", dea_asset_script);
+  return report->text.failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+/* Runs that are read: reads what is beside them, and draws. */
+static dea_status draw_runs(struct dea_context *ctx, const struct dea_report_run *runs,
+                            size_t count, const char *measured, enum view view,
+                            struct dea_text *out)
+{
+  const struct dea_report_options options = {.measurement = measured};
+  struct dea_report report = {
+      .ctx = ctx, .options = &options, .runs = runs, .count = count, .level = 3, .text = *out};
+  struct dea_measured *beside = NULL;
+  dea_status status = DEA_OK;
+  if (measured != NULL) {
+    status = dea_measured_read(ctx, measured, &beside);
+    status = status == DEA_OK ? dea_measured_fold(ctx, beside) : status;
+    report.measurement = beside != NULL ? beside->points : NULL;
+  }
+  if (status == DEA_OK) {
+    void *before = dea_c_locale_enter();
+    status = view == CURVES ? add_sections(&report)
+             : view == FILM ? add_page(&report, dea_section_membrane)
+                            : add_page(&report, dea_section_explorer);
+    dea_c_locale_leave(before);
+  }
+  *out = report.text;
+  dea_measured_destroy(ctx, beside);
+  return status;
+}
+
+/* Of the sweeps that are there the first of the run's design. */
+static dea_status find_sweep(struct dea_context *ctx, const char *folder, const json_t *sweeps,
+                             struct dea_report_run *run, char **bytes)
+{
+  for (size_t i = 0; i < json_array_size(sweeps) && run->emulator == NULL; i++) {
+    const json_t *name = json_object_get(json_array_get(sweeps, i), "name");
+    char *path = dea_path_join(ctx, folder, json_string_value(name));
+    dea_free(ctx, *bytes);
+    *bytes = NULL;
+    const dea_status status =
+        path != NULL ? dea_report_runs_explore(ctx, path, run, 1, bytes) : DEA_E_MEMORY;
+    dea_free(ctx, path);
+    if (status == DEA_E_MEMORY) {
+      return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+    }
+    dea_context_clear(ctx); // it is of another design, or just being written
+  }
+  return DEA_OK;
+}
+
+/* Adds HTML whose numbers the page's script finds. folder: that has runs [name], at most RUNS_MAX,
+ * also ones that go on; measured: a table beside them, NULL: none; sweeps [{name}]: folders of
+ * sweeps over numbers of designs. One thread at a time. DEA_E_IO as dea_run_read, or of the table
+ * after findings.
+ */
+static dea_status add_runs_html(struct dea_context *ctx, const char *folder, const json_t *names,
+                                const char *measured, const json_t *sweeps, enum view view,
+                                struct dea_text *out)
+{
+  struct dea_report_run runs[RUNS_MAX] = {{0}};
+  char *paths[RUNS_MAX + 1] = {NULL}, *emulator = NULL;
+  const size_t count = json_array_size(names);
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i <= count && status == DEA_OK; i++) {
+    const char *name = i < count ? json_string_value(json_array_get(names, i)) : measured;
+    paths[i] = name != NULL ? dea_path_join(ctx, folder, name) : NULL;
+    status = paths[i] != NULL || name == NULL ? DEA_OK : DEA_E_MEMORY;
+  }
+  if (status == DEA_OK) {
+    status = dea_report_runs_open(ctx, (const char *const *)paths, count, runs);
+  }
+  if (status == DEA_OK && view == SLIDERS) {
+    status = find_sweep(ctx, folder, sweeps, &runs[0], &emulator);
+  }
+  for (size_t i = 0; i < count && status == DEA_OK; i++) { // they are known by their folders here
+    snprintf(runs[i].title, sizeof runs[i].title, "%s", dea_path_name(paths[i]));
+  }
+  status = status == DEA_OK ? draw_runs(ctx, runs, count, paths[count], view, out) : status;
+  dea_free(ctx, emulator);
+  dea_report_runs_close(ctx, runs, count);
+  for (size_t i = 0; i <= RUNS_MAX; i++) {
+    dea_free(ctx, paths[i]);
+  }
+  return DEA_CHAIN(ctx, status);
+}
+
+/* CURVES: figures of one run, with their limits, or of several beside each other; FILM: the film of
+ * the first in space, SLIDERS: its explorer, as pages of their own. */
+static void get_runs(struct work *w)
+{
+  const enum view view = w->route->view;
   const json_t *runs = json_object_get(w->request->arguments, "run");
   const char *measured = argument(w, "measured", 0);
   struct dea_studio_line unused = {.count = 0};
@@ -434,39 +544,24 @@ static void show_runs(struct work *w, enum dea_studio_view view)
   if (!add_runs(w, runs, measured, &unused, NULL)) {
     return;
   }
-  if (asked == 0 || asked > DEA_STUDIO_RUNS_MAX) {
+  if (asked == 0 || asked > RUNS_MAX) {
     respond_error(w, 400, "1 to 6 runs can be shown at a time");
     return;
   }
   struct dea_text out = {.ctx = w->ctx};
-  json_t *lists = view == DEA_STUDIO_SLIDERS ? dea_studio_list(w->workspace->folder) : NULL;
+  json_t *lists = view == SLIDERS ? dea_studio_list(w->workspace->folder) : NULL;
   pthread_mutex_lock(&w->workspace->results_lock);
-  const dea_status status = dea_studio_show(w->ctx, w->workspace->path, runs, measured,
-                                            json_object_get(lists, "sweeps"), view, &out);
+  const dea_status status = add_runs_html(w->ctx, w->workspace->path, runs, measured,
+                                          json_object_get(lists, "sweeps"), view, &out);
   pthread_mutex_unlock(&w->workspace->results_lock);
   if (status == DEA_OK && !out.failed) {
     respond(w, 200, html_mime, dea_text_get(&out), out.length);
-    w->reply->foreign = view != DEA_STUDIO_CURVES;
+    w->reply->foreign = view != CURVES;
   } else {
     respond_failure(w);
   }
   json_decref(lists);
   dea_text_free(&out);
-}
-
-static void get_curves(struct work *w)
-{
-  show_runs(w, DEA_STUDIO_CURVES);
-}
-
-static void get_film(struct work *w)
-{
-  show_runs(w, DEA_STUDIO_FILM);
-}
-
-static void get_sliders(struct work *w)
-{
-  show_runs(w, DEA_STUDIO_SLIDERS);
 }
 
 // Examples ----------------------------------------------------------------------------------------
@@ -652,7 +747,7 @@ static bool create_file_job(struct work *w, const json_t *body, const char *acti
 static bool build_report(struct work *w, const json_t *body, struct dea_studio_line *line)
 {
   const json_t *runs = json_object_get(body, "runs");
-  if (json_array_size(runs) == 0 || json_array_size(runs) > DEA_STUDIO_RUNS_MAX) {
+  if (json_array_size(runs) == 0 || json_array_size(runs) > RUNS_MAX) {
     respond_error(w, 400, "1 to 6 runs make a report");
     return false;
   }
@@ -709,36 +804,38 @@ static void post_stop(struct work *w)
 void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *workspace,
                        const struct dea_studio_request *request, struct dea_studio_reply *reply)
 {
-  static const struct {
-    const char *method, *path;
-    void (*answer)(struct work *w);
-  } routes[] = {{"GET", "", get_page},
-                {"GET", "studio.css", get_style},
-                {"GET", "studio.js", get_script},
-                {"GET", "state", get_state},
-                {"GET", "design", get_design},
-                {"PUT", "design", store_file},
-                {"GET", "check", get_check},
-                {"GET", "mesh", get_mesh},
-                {"GET", "schema", get_schema},
-                {"GET", "compare", get_compare},
-                {"GET", "curves", get_curves},
-                {"GET", "film", get_film},
-                {"GET", "sliders", get_sliders},
-                {"GET", "examples", get_examples},
-                {"GET", "picture", get_picture},
-                {"GET", "file", get_file},
-                {"GET", "list", get_list},
-                {"POST", "copy", post_copy},
-                {"POST", "job", post_job},
-                {"POST", "stop", post_stop}};
-  struct work w = {ctx, workspace, request, reply};
+  static const struct route routes[] = {
+      {"GET", "", get_part, html_mime, dea_asset_studio_page,
+       .length = &dea_asset_studio_page_length},
+      {"GET", "studio.css", get_part, "text/css; charset=utf-8", dea_asset_studio_style,
+       .length = &dea_asset_studio_style_length},
+      {"GET", "studio.js", get_part, "text/javascript; charset=utf-8", dea_asset_studio_script,
+       .length = &dea_asset_studio_script_length},
+      {"GET", "state", .answer = get_state},
+      {"GET", "design", .answer = get_design},
+      {"PUT", "design", .answer = store_file},
+      {"GET", "check", get_of_design, .command = "check", .option = "--svg", .ending = "svg"},
+      {"GET", "mesh", get_of_design, .command = "mesh", .option = "-o", .ending = "msh"},
+      {"GET", "schema", .answer = get_schema},
+      {"GET", "compare", .answer = get_compare},
+      {"GET", "curves", get_runs, .view = CURVES},
+      {"GET", "film", get_runs, .view = FILM},
+      {"GET", "sliders", get_runs, .view = SLIDERS},
+      {"GET", "examples", .answer = get_examples},
+      {"GET", "picture", .answer = get_picture},
+      {"GET", "file", .answer = get_file},
+      {"GET", "list", .answer = get_list},
+      {"POST", "copy", .answer = post_copy},
+      {"POST", "job", .answer = post_job},
+      {"POST", "stop", .answer = post_stop}};
+  struct work w = {NULL, ctx, workspace, request, reply};
   bool path_known = false;
   for (size_t i = 0; i < sizeof routes / sizeof routes[0]; i++) {
     if (strcmp(routes[i].path, request->path) == 0) {
       path_known = true;
       if (strcmp(routes[i].method, request->method) == 0) {
-        routes[i].answer(&w);
+        w.route = &routes[i];
+        w.route->answer(&w);
         return;
       }
     }

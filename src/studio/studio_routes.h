@@ -39,6 +39,3 @@ enum { DEA_STUDIO_BODY_MAX = 8 << 20 };
 /* Fills a reply, whose body has its context set; an error too is one. */
 void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *workspace,
                        const struct dea_studio_request *request, struct dea_studio_reply *reply);
-/* What there is: {folder, open, designs, runs, tables, folders, jobs}; NULL when memory is short.
- */
-json_t *dea_studio_state(struct dea_studio_folder *workspace);

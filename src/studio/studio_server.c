@@ -1,8 +1,10 @@
 /* The studio on the network, which is this computer: what is let in, and how it is answered. */
 #define _GNU_SOURCE // getrandom, mkdtemp, realpath
+#include "base/clock.h"
 #include "base/write_file.h"
 #include "studio/studio_routes.h"
 
+#include <civetweb.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -11,24 +13,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-void dea_studio_parts(bool *server, bool *editor)
-{
-  *server = *editor = false;
-#ifdef DEA_HAVE_CIVETWEB
-  *server = true;
-#endif
-#ifdef DEA_HAVE_CODEMIRROR
-  *editor = true;
-#endif
-}
-
-#ifdef DEA_HAVE_CIVETWEB
-#include "base/clock.h"
-
-#include <civetweb.h>
-#include <stdatomic.h>
-
-enum { SECRET_BYTES = 18, SECRET_SIZE = 2 * SECRET_BYTES + 1, LISTENERS_MAX = 24, THREADS = 40 };
+enum { SECRET_BYTES = 18, SECRET_SIZE = 2 * SECRET_BYTES + 1, THREADS = 40 };
 
 static const double body_patience_s = 3; // for all of a request's body
 
@@ -43,8 +28,6 @@ struct dea_studio {
   char secret[SECRET_SIZE]; // first part of all paths
   char address[SECRET_SIZE + 64];
   char hosts[2][32], origins[2][48]; // what a browser may say that it has come to, and from
-  atomic_bool closing;
-  atomic_int listeners; // that wait for events
 };
 
 // What is let in ----------------------------------------------------------------------------------
@@ -107,8 +90,8 @@ static const char own_policy[] = "default-src 'none'; script-src 'self'; style-s
                                      "'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
                                      "'none'; frame-ancestors 'self'";
 
-static void send_head(struct mg_connection *connection, int status, const char *type,
-                      long long length, const char *policy)
+static void send_head(struct mg_connection *connection, int status, const char *type, size_t length,
+                      const char *policy)
 {
   mg_disable_connection_keep_alive(connection); // nor is a body that was refused waited for
   mg_printf(connection,
@@ -116,52 +99,16 @@ static void send_head(struct mg_connection *connection, int status, const char *
             "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
             "Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n"
             "Cross-Origin-Opener-Policy: same-origin\r\n"
-            "Connection: close\r\n",
-            status, mg_get_response_code_text(connection, status), type, policy);
-  if (length >= 0) {
-    mg_printf(connection, "Content-Length: %lld\r\n", length);
-  }
-  mg_printf(connection, "\r\n");
+            "Connection: close\r\nContent-Length: %zu\r\n\r\n",
+            status, mg_get_response_code_text(connection, status), type, policy, length);
 }
 
 static int send_refusal(struct mg_connection *connection, int status)
 {
   static const char text[] = "refused\n";
-  send_head(connection, status, "text/plain", (long long)sizeof text - 1, own_policy);
+  send_head(connection, status, "text/plain", sizeof text - 1, own_policy);
   mg_write(connection, text, sizeof text - 1);
   return status;
-}
-
-/* Sends what there is whenever that has changed, and now and then nothing, to hear whether somebody
- * listens. */
-static int send_events(struct dea_studio *studio, struct mg_connection *connection)
-{
-  static const double look_s = 0.15, sign_s = 5;
-  char *last = NULL;
-  double signed_s = dea_clock_s();
-  bool there = true;
-  if (atomic_fetch_add(&studio->listeners, 1) >= LISTENERS_MAX) {
-    atomic_fetch_sub(&studio->listeners, 1);
-    return send_refusal(connection, 503);
-  }
-  send_head(connection, 200, "text/event-stream", -1, own_policy);
-  while (there && !atomic_load(&studio->closing)) {
-    json_t *state = dea_studio_state(&studio->workspace);
-    char *text = json_dumps(state, JSON_COMPACT);
-    json_decref(state);
-    if (text != NULL && (last == NULL || strcmp(text, last) != 0)) {
-      there = mg_printf(connection, "data: %s\n\n", text) > 0;
-    } else if (dea_clock_s() - signed_s > sign_s) {
-      there = mg_printf(connection, ":\n\n") > 0;
-      signed_s = dea_clock_s();
-    }
-    free(last);
-    last = text;
-    dea_clock_wait(look_s);
-  }
-  free(last);
-  atomic_fetch_sub(&studio->listeners, 1);
-  return 200;
 }
 
 /* Arguments of an address: {name: [text]}. */
@@ -253,7 +200,7 @@ static int answer(struct dea_studio *studio, struct mg_connection *connection,
                                                .body_length = length};
     answer_in_worker(&(struct task){ctx, &studio->workspace, &request, &reply});
     json_decref(request.arguments);
-    send_head(connection, reply.status, reply.type, (long long)reply.body.length,
+    send_head(connection, reply.status, reply.type, reply.body.length,
               reply.foreign ? foreign_policy : own_policy);
     mg_write(connection, reply.body.data, reply.body.length);
   } else {
@@ -272,9 +219,6 @@ static int on_request(struct mg_connection *connection)
   const int refused = refuse(studio, connection, info);
   if (refused != 0) {
     return send_refusal(connection, refused);
-  }
-  if (strcmp(info->local_uri + 1 + SECRET_SIZE, "events") == 0) {
-    return send_events(studio, connection);
   }
   return answer(studio, connection, info);
 }
@@ -433,7 +377,6 @@ void dea_studio_stop(struct dea_studio *studio)
     return;
   }
   struct dea_context *ctx = studio->ctx;
-  atomic_store(&studio->closing, true);
   if (studio->server != NULL) {
     mg_stop(studio->server);
     mg_exit_library();
@@ -453,36 +396,3 @@ void dea_studio_stop(struct dea_studio *studio)
   free(studio->path);
   dea_free(ctx, studio);
 }
-#else
-dea_status dea_studio_start(struct dea_context *ctx, const struct dea_studio_options *options,
-                            struct dea_studio **out)
-{
-  (void)options;
-  *out = NULL;
-  return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                  "this program was built without civetweb; install libcivetweb-dev and build it "
-                  "again");
-}
-
-const char *dea_studio_address(const struct dea_studio *studio)
-{
-  (void)studio;
-  return "";
-}
-
-const char *dea_studio_doorway(const struct dea_studio *studio)
-{
-  (void)studio;
-  return "";
-}
-
-void dea_studio_serve(struct dea_studio *studio)
-{
-  (void)studio;
-}
-
-void dea_studio_stop(struct dea_studio *studio)
-{
-  (void)studio;
-}
-#endif

@@ -1,14 +1,117 @@
 #include "table/csv_columns.h"
 
 #include "base/csv_line.h"
+#include "base/file.h"
+#include "table/csv_text.h"
 #include "table/fields.h"
+#include "table/text_file.h"
 #include "table/titles.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { FINDINGS_MAX = 20 };
+enum { FINDINGS_MAX = 20, FILE_MAX = 100000000 };
+
+// Fields ------------------------------------------------------------------------------------------
+
+static dea_status read_file(struct dea_context *ctx, const char *file, struct dea_fields *out)
+{
+  struct dea_table table = {.file = dea_intern(ctx, file), .fields = out};
+  size_t length;
+  *out = (struct dea_fields){.file = table.file};
+  DEA_TRY_MEMORY(table.file != NULL);
+  const dea_status read = dea_file_read(ctx, file, FILE_MAX, &out->bytes, &length);
+  DEA_TRY(ctx, read == DEA_E_DESIGN ? dea_fail(ctx, DEA_E_IO, "'%s' is too large", file) : read);
+  return DEA_CHAIN(ctx, dea_text_file_read(ctx, (const unsigned char *)out->bytes, length,
+                                           dea_table_read_text, &table));
+}
+
+static void free_fields(struct dea_context *ctx, struct dea_fields *fields)
+{
+  dea_free(ctx, fields->titles);
+  dea_free(ctx, fields->lines);
+  dea_free(ctx, fields->numbers);
+  dea_free(ctx, fields->bytes);
+  dea_free(ctx, fields->copy);
+}
+
+/* Where a piece of its text stands. */
+static struct dea_location place_of(const struct dea_fields *fields, struct dea_slice piece)
+{
+  struct dea_location at = {fields->file, 1, 1};
+  const char *end = fields->text.text + fields->text.length;
+  for (const char *c = fields->text.text; c < piece.text && c < end; c++) {
+    at.column = *c == '\n' ? 1 : at.column + 1;
+    at.line += *c == '\n';
+  }
+  return at;
+}
+
+static void copy_slice(struct dea_slice slice, char *out)
+{
+  const size_t n = slice.length < DEA_CSV_FIELD_MAX ? slice.length : DEA_CSV_FIELD_MAX - 1;
+  if (n > 0) {
+    memcpy(out, slice.text, n);
+  }
+  out[n] = '\0';
+}
+
+/* Name and unit of a column's title, each DEA_CSV_FIELD_MAX bytes; the name as dea_csv_fold has it,
+ * also where its unit is none that is known. */
+static void split_title(struct dea_context *ctx, const struct dea_fields *fields, size_t column,
+                        char *name, char *unit)
+{
+  char title[DEA_CSV_FIELD_MAX];
+  struct dea_slice bare, own = fields->units[column];
+  copy_slice(fields->titles[column], title);
+  dea_csv_split_title(title, name, unit);
+  if (unit[0] == '\0' && own.length > 0) {
+    const bool bracket = own.length > 2 && (own.text[0] == '(' || own.text[0] == '[');
+    copy_slice(bracket ? (struct dea_slice){own.text + 1, own.length - 2} : own, unit);
+  } else if (unit[0] == '\0') {
+    dea_title_split(ctx, fields->titles[column], &bare, &own);
+    copy_slice(own, unit);
+    copy_slice(bare, title);
+    dea_csv_fold(title, name);
+  }
+}
+
+/* "1e999" and "inf", which are no words for a missing value. */
+static bool is_too_large(struct dea_slice field, double value)
+{
+  char text[DEA_CSV_FIELD_MAX];
+  const char *end;
+  copy_slice(field, text);
+  return value != value && isinf(dea_text_to_double(text, &end)) && *end == '\0';
+}
+
+/* The number of a field of a row, NAN for a missing one. What is none is an error, and false.
+ * marks: of this column. */
+static bool read_number(struct dea_context *ctx, const struct dea_fields *fields, size_t row,
+                        struct dea_slice field, struct dea_text_marks *marks, double *value)
+{
+  // "3.5" among decimal commas, where a comma parts no fields
+  const char other = fields->separator == ',' || dea_slice_has_groups(field) ? fields->decimal
+                     : fields->decimal == ','                                ? '.'
+                                                                             : ',';
+  const bool number =
+      dea_slice_number(field, fields->decimal, value) || dea_slice_number(field, other, value);
+  if (number && !is_too_large(field, *value)) {
+    dea_text_marks_count(marks, field, fields->decimal, fields->numbers[row]);
+    return true;
+  }
+  const struct dea_location here = {fields->file, fields->numbers[row],
+                                    (size_t)(field.text - fields->lines[row].text) + 1};
+  (void)dea_finding_add(ctx, DEA_ERROR, here,
+                        dea_slice_has_groups(field)
+                            ? "'%.*s' has marks between thousands: export numbers without them"
+                            : "'%.*s' is not a number",
+                        (int)(field.length < 40 ? field.length : 40), field.text);
+  return false;
+}
+
+// Columns -----------------------------------------------------------------------------------------
 
 /* What a column of the file is. */
 struct meaning {
@@ -33,7 +136,7 @@ struct reader {
 /* Where an error is; false when there are too many to be told. */
 static bool one_more(struct reader *r, struct dea_slice piece, struct dea_location *location)
 {
-  *location = dea_fields_place(&r->fields, piece);
+  *location = place_of(&r->fields, piece);
   return ++r->errors <= FINDINGS_MAX;
 }
 
@@ -159,7 +262,7 @@ static dea_status find_nearest(struct reader *r, const char *name, const char **
 static dea_status unknown_title(struct reader *r, struct dea_slice title, const char *name)
 {
   const int length = (int)(title.length < 60 ? title.length : 60);
-  struct dea_location location = dea_fields_place(&r->fields, title);
+  struct dea_location location = place_of(&r->fields, title);
   const char *nearest;
   if (length == 0) {
     return DEA_OK;
@@ -185,7 +288,7 @@ static dea_status read_title(struct reader *r, size_t column)
   const struct meaning *before = column > 0 ? m - 1 : NULL;
   const struct dea_slice title = r->fields.titles[column];
   const int length = (int)(title.length < 60 ? title.length : 60);
-  dea_fields_title(r->ctx, &r->fields, column, name, unit);
+  split_title(r->ctx, &r->fields, column, name, unit);
   m->wanted = find_wanted(r, name);
   if (m->wanted == r->wanted_count && cut_std(name)) {
     m->std = true;
@@ -201,7 +304,7 @@ static dea_status read_title(struct reader *r, size_t column)
   }
   const struct dea_csv_wanted *w = &r->wanted[m->wanted];
   double **values = m->std ? &r->out->std[m->wanted] : &r->out->values[m->wanted];
-  struct dea_location location = dea_fields_place(&r->fields, title);
+  struct dea_location location = place_of(&r->fields, title);
   if (*values != NULL) {
     r->errors++;
     return dea_finding_add(r->ctx, DEA_ERROR, location, "'%.*s' is there twice", length,
@@ -249,7 +352,7 @@ static dea_status read_field(struct reader *r, size_t row, struct meaning *m,
     m->values[row] = wanted->parse(words);
     return DEA_OK;
   }
-  if (!dea_fields_number(r->ctx, &r->fields, row, field, &m->marks, &value)) {
+  if (!read_number(r->ctx, &r->fields, row, field, &m->marks, &value)) {
     r->errors++;
     return dea_context_status(r->ctx) == DEA_E_MEMORY ? DEA_E_MEMORY : DEA_OK;
   }
@@ -305,10 +408,10 @@ dea_status dea_csv_columns_read(struct dea_context *ctx, const char *file,
   struct reader r = {
       .ctx = ctx, .wanted = wanted, .wanted_count = count, .known = known, .out = out};
   *out = (struct dea_csv_columns){.memory = {.ctx = ctx}};
-  DEA_TRY(ctx, dea_fields_read(ctx, file, &r.fields));
+  dea_status status = read_file(ctx, file, &r.fields);
   out->file = r.fields.file;
-  const dea_status status = read_fields(&r);
-  dea_fields_free(ctx, &r.fields);
+  status = status == DEA_OK ? read_fields(&r) : status;
+  free_fields(ctx, &r.fields);
   if (status != DEA_OK) {
     dea_csv_columns_free(ctx, out);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -35,9 +35,9 @@ struct dea_csv_columns {
 
 /* Reads the columns wanted [count]. Others become notes and are left out, or with `known`, which
  * says what there is ("'V (kV)', 'force (mN)'"), errors with the nearest title. Encoding,
- * separators, preamble, titles and units as the reader of text tables finds them (table/fields.h).
- * All errors become findings with file:line:column; DEA_E_IO then. out: freed by the caller after
- * success, empty on failure. */
+ * separators, preamble, titles and units as the reader of text tables finds them
+ * (table/csv_text.h). All errors become findings with file:line:column; DEA_E_IO then. out: freed
+ * by the caller after success, empty on failure. */
 dea_status dea_csv_columns_read(struct dea_context *ctx, const char *file,
                                 const struct dea_csv_wanted *wanted, size_t count,
                                 const char *known, struct dea_csv_columns *out);

@@ -213,17 +213,12 @@ static dea_status refuse_thousands(const struct sample *sample, const struct can
 /* The best way to read the sample; best->rows 0 when there is none. */
 static void choose(const struct sample *sample, bool *text, bool *other, struct candidate *best)
 {
-  static const struct candidate all[] = {
-      {.separator = '\t', .decimal = '.'}, {.separator = '\t', .decimal = ','},
-      {.separator = ';', .decimal = '.'},  {.separator = ';', .decimal = ','},
-      {.separator = ',', .decimal = '.'},  {.separator = ',', .decimal = ','},
-      {.separator = '|', .decimal = '.'},  {.separator = '|', .decimal = ','},
-      {.separator = ' ', .decimal = '.'},  {.separator = ' ', .decimal = ','}};
+  static const char separators[] = {'\t', ';', ',', '|', ' '};
   *best = (struct candidate){0};
   // the last line may be cut off, or be none of the numbers
   for (size_t back = 1; back <= 2 && back <= sample->count && best->rows < 2; back++) {
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-      struct candidate c = all[i];
+    for (size_t i = 0; i < 2 * sizeof separators; i++) {
+      struct candidate c = {.separator = separators[i / 2], .decimal = i % 2 == 0 ? '.' : ','};
       if (sample->given != '\0' && c.separator != sample->given) {
         continue;
       }

@@ -8,62 +8,16 @@
 
 enum { HEAD_BYTES = 1 << 20 }; // in which its letters are looked at
 
-/* 0: no mark of UTF-16, 1: little-endian, 2: big-endian. */
-static int utf16_mark(const unsigned char *bytes, size_t length)
+/* NULL: there is no mark of UTF-16. */
+static const char *utf16_of(const unsigned char *bytes, size_t length)
 {
-  if (length < 2) {
-    return 0;
-  }
-  return bytes[0] == 0xff && bytes[1] == 0xfe ? 1 : bytes[0] == 0xfe && bytes[1] == 0xff ? 2 : 0;
-}
-
-static size_t add_letter(unsigned code, char *out)
-{
-  if (code < 0x80) {
-    out[0] = (char)code;
-    return 1;
-  }
-  if (code < 0x800) {
-    out[0] = (char)(0xc0 | code >> 6);
-    out[1] = (char)(0x80 | (code & 0x3f));
-    return 2;
-  }
-  if (code < 0x10000) {
-    out[0] = (char)(0xe0 | code >> 12);
-    out[1] = (char)(0x80 | (code >> 6 & 0x3f));
-    out[2] = (char)(0x80 | (code & 0x3f));
-    return 3;
-  }
-  out[0] = (char)(0xf0 | code >> 18);
-  out[1] = (char)(0x80 | (code >> 12 & 0x3f));
-  out[2] = (char)(0x80 | (code >> 6 & 0x3f));
-  out[3] = (char)(0x80 | (code & 0x3f));
-  return 4;
-}
-
-/* out: room for three bytes a unit. */
-static size_t to_utf8(const unsigned char *bytes, size_t units, bool big, char *out)
-{
-  size_t n = 0;
-  for (size_t i = 0; i < units; i++) {
-    unsigned code = (unsigned)bytes[2 * i + (big ? 0 : 1)] << 8 | bytes[2 * i + (big ? 1 : 0)];
-    if (code >= 0xd800 && code < 0xdc00 && i + 1 < units) {
-      const unsigned char *next = bytes + 2 * i + 2;
-      unsigned low = (unsigned)next[big ? 0 : 1] << 8 | next[big ? 1 : 0];
-      if (low >= 0xdc00 && low < 0xe000) {
-        code = 0x10000 + ((code - 0xd800) << 10) + (low - 0xdc00);
-        i++;
-      }
-    }
-    code = code == 0 || (code >= 0xd800 && code < 0xe000) ? 0xfffd : code;
-    n += add_letter(code, out + n);
-  }
-  return n;
+  const unsigned mark = length < 2 ? 0 : bytes[0] << 8 | bytes[1];
+  return mark == 0xfffe ? "UTF-16LE" : mark == 0xfeff ? "UTF-16BE" : NULL;
 }
 
 bool dea_text_file_is(const unsigned char *head, size_t length)
 {
-  return utf16_mark(head, length) != 0 || memchr(head, 0, length) == NULL;
+  return utf16_of(head, length) != NULL || memchr(head, 0, length) == NULL;
 }
 
 static bool is_utf8(const unsigned char *bytes, size_t length)
@@ -123,10 +77,10 @@ static struct letters find_encoding(const unsigned char *bytes, size_t length)
   return l;
 }
 
-/* The encoding of bytes that are no UTF-8, by a rule each: Shift-JIS has pairs whose first byte no
- * other one uses for letters; of Chinese and Korean ones only the Chinese go beyond 0xc8; Cyrillic
- * words have odd numbers of letters; Latin-1 has signs and single letters. "": Latin-1, which stays
- * as it is. NULL: none fits, or more than one. */
+/* The encoding of bytes that are no Unicode, by a rule each: Shift-JIS has pairs whose first byte
+ * no other one uses for letters; of Chinese and Korean ones only the Chinese go beyond 0xc8;
+ * Cyrillic words have odd numbers of letters; Latin-1 has signs and single letters. "": Latin-1,
+ * which stays as it is. NULL: none fits, or more than one. */
 static const char *encoding_of(const unsigned char *bytes, size_t length)
 {
   enum { ENOUGH = 2 };
@@ -173,25 +127,6 @@ static struct dea_location find_letter(const char *file, struct dea_slice text)
   return at;
 }
 
-/* Text that is no UTF-8 as such; Latin-1 stays. */
-static dea_status decode(struct dea_context *ctx, const char *file, char **copy,
-                         struct dea_slice *text)
-{
-  const unsigned char *bytes = (const unsigned char *)text->text;
-  const size_t head = text->length < HEAD_BYTES ? text->length : HEAD_BYTES;
-  if (is_utf8(bytes, head)) {
-    return DEA_OK;
-  }
-  const char *encoding = encoding_of(bytes, head);
-  if (encoding != NULL && (encoding[0] == '\0' || convert(ctx, encoding, *text, copy, text))) {
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, dea_context_status(ctx) == DEA_E_MEMORY ? DEA_E_MEMORY : DEA_OK);
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, find_letter(file, *text),
-                               "letters in an encoding that is not known: save as UTF-8"));
-  return dea_fail(ctx, DEA_E_IO, "'%s' cannot be read", file);
-}
-
 /* Full-width signs of Japanese and Chinese keyboards ("\xef\xbc\x88kV\xef\xbc\x89") become those
  * of ASCII. */
 static dea_status narrow(struct dea_context *ctx, char **copy, struct dea_slice *text)
@@ -216,30 +151,38 @@ static dea_status narrow(struct dea_context *ctx, char **copy, struct dea_slice 
   return DEA_OK;
 }
 
-/* *copy: the text where it had to be converted, the caller's; else NULL and the bytes are lent. */
+/* Text that is no UTF-8 as such; Latin-1 stays. *copy: the text where it had to be converted, the
+ * caller's; else NULL and the bytes are lent. */
 static dea_status open_text(struct dea_context *ctx, const char *file, const unsigned char *bytes,
                             size_t length, char **copy, struct dea_slice *text)
 {
-  int mark = utf16_mark(bytes, length);
+  const char *encoding = utf16_of(bytes, length);
+  const size_t head = length < HEAD_BYTES ? length : HEAD_BYTES;
+  const size_t mark = encoding != NULL                                       ? 2
+                      : length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3
+                                                                             : 0;
+  const unsigned char *zero = encoding == NULL ? memchr(bytes, 0, length) : NULL;
   *copy = NULL;
-  *text = (struct dea_slice){(const char *)bytes, length};
-  if (mark != 0) {
-    size_t units = (length - 2) / 2;
-    *copy = dea_alloc(ctx, units + 1, 3);
-    DEA_TRY_MEMORY(*copy != NULL);
-    *text = (struct dea_slice){*copy, to_utf8(bytes + 2, units, mark == 2, *copy)};
-    return DEA_OK;
-  }
-  if (length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
-    *text = (struct dea_slice){(const char *)bytes + 3, length - 3};
-  }
-  const unsigned char *zero = memchr(bytes, 0, length);
+  *text = (struct dea_slice){(const char *)bytes + mark, length - mark};
   if (zero != NULL) {
     return dea_fail(ctx, DEA_E_IO,
                     "'%s' is no text: byte %zu is 0 (UTF-16 needs its byte order mark)", file,
                     (size_t)(zero - bytes));
   }
-  return decode(ctx, file, copy, text);
+  if (encoding != NULL) {
+    text->length -= length % 2; // half a letter
+  } else if (is_utf8(bytes, head)) {
+    return DEA_OK;
+  } else {
+    encoding = encoding_of(bytes, head);
+  }
+  if (encoding != NULL && (encoding[0] == '\0' || convert(ctx, encoding, *text, copy, text))) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_context_status(ctx) == DEA_E_MEMORY ? DEA_E_MEMORY : DEA_OK);
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, find_letter(file, *text),
+                               "letters in an encoding that is not known: save as UTF-8"));
+  return dea_fail(ctx, DEA_E_IO, "'%s' cannot be read", file);
 }
 
 /* Lines that end with a carriage return alone get line feeds. *copy: as of open_text. */

@@ -301,33 +301,24 @@ static size_t title_end(struct dea_slice line, size_t blanks)
   return line.length;
 }
 
-static size_t part_blanks(struct dea_slice line, size_t blanks, size_t capacity,
-                          struct dea_slice *out)
+/* Where it ends with a unit in brackets: "V0 (kV) Line integration (N)". */
+static size_t unit_end(struct dea_slice line)
 {
-  size_t count = 0;
-  line = dea_slice_trim(line);
-  while (line.length > 0) {
-    size_t n = title_end(line, blanks);
-    if (count < capacity) {
-      out[count] = dea_slice_trim((struct dea_slice){line.text, n});
-    }
-    count++;
-    line = dea_slice_trim((struct dea_slice){line.text + n, line.length - n});
+  size_t n = 0;
+  while (n < line.length && line.text[n] != ')' && line.text[n] != ']') {
+    n++;
   }
-  return count;
+  return n + (n < line.length);
 }
 
-/* Each ends with a unit in brackets: "V0 (kV) Line integration (N)". */
-static size_t part_units(struct dea_slice line, size_t capacity, struct dea_slice *out)
+/* blanks: as of title_end; 0: each ends with a unit in brackets. */
+static size_t part_line(struct dea_slice line, size_t blanks, size_t capacity,
+                        struct dea_slice *out)
 {
   size_t count = 0;
   line = dea_slice_trim(line);
   while (line.length > 0) {
-    size_t n = 0;
-    while (n < line.length && line.text[n] != ')' && line.text[n] != ']') {
-      n++;
-    }
-    n += n < line.length;
+    size_t n = blanks > 0 ? title_end(line, blanks) : unit_end(line);
     if (count < capacity) {
       out[count] = dea_slice_trim((struct dea_slice){line.text, n});
     }
@@ -340,8 +331,8 @@ static size_t part_units(struct dea_slice line, size_t capacity, struct dea_slic
 bool dea_titles_part(struct dea_slice line, char separator, size_t count, struct dea_slice *out)
 {
   if (separator == ' ') {
-    return part_blanks(line, 2, count, out) == count || part_blanks(line, 1, count, out) == count ||
-           part_units(line, count, out) == count;
+    return part_line(line, 2, count, out) == count || part_line(line, 1, count, out) == count ||
+           part_line(line, 0, count, out) == count;
   }
   struct dea_slice field;
   size_t n = 0;

@@ -1,4 +1,4 @@
-/* What a column may be, by words of its name; they are a table, word_list.h. */
+/* What a column may be, by words of its name; they are a table in words.c. */
 #pragma once
 
 #include "table/slices.h"

@@ -4,7 +4,6 @@
 #include "base/write_file.h"
 #include "failing_allocator.h"
 #include "fake_result.h"
-#include "figures/colour_map.h"
 #include "figures/run_figures.h"
 #include "io/results_h5.h"
 #include "io/summary.h"
@@ -509,7 +508,7 @@ TEST(test_colours_keep_the_sign_in_grey)
   const double low_m[] = {-1e-5, -1e-5, 0};
   for (int k = 0; k < 3; k++) {
     struct dea_text gp = {.ctx = ctx};
-    dea_colour_map_add_palette(&gp, low_m[k], k == 1 ? 0 : 1e-5);
+    dea_figure_add_palette(&gp, low_m[k], k == 1 ? 0 : 1e-5);
     double before = -1;
     int count = 0;
     for (const char *at = dea_text_get(&gp); (at = strchr(at, '#')) != NULL; at++, count++) {

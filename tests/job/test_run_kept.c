@@ -127,7 +127,7 @@ static dea_status run(struct dea_context *c, const char *name, size_t count, boo
 {
   char directory[700];
   struct dea_result *result = NULL;
-  struct dea_keep *keep = NULL;
+  struct dea_keep keep;
   snprintf(directory, sizeof directory, "%s/%s", folder, name);
   design.compute.voltages_V = voltages_V;
   design.compute.voltage_count = count;
@@ -145,10 +145,8 @@ static dea_status run(struct dea_context *c, const char *name, size_t count, boo
     dea_run_folder_clear(c, directory);
   }
   if (status == DEA_OK) {
-    status = dea_checkpoint_create(c, directory, &keep);
-  }
-  if (status == DEA_OK) {
-    const struct dea_study_services services = {.checkpoint = dea_checkpoint_get_sink(keep)};
+    dea_checkpoint_begin(&keep, directory);
+    const struct dea_study_services services = {.checkpoint = &keep.sink};
     status = dea_study_run_with(c, &fake_type, NULL, 0, &services, result);
     const struct dea_curve *sweep = dea_result_find(result, "fake", "sweep");
     *z = sweep != NULL && sweep->count > 0 ? sweep->points[sweep->count - 1].centre_z_m : NAN;
@@ -165,7 +163,6 @@ static dea_status run(struct dea_context *c, const char *name, size_t count, boo
       assert_true(sweep->complete);
     }
   }
-  dea_checkpoint_destroy(c, keep);
   dea_result_destroy(c, result);
   return status;
 }

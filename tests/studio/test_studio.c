@@ -428,53 +428,6 @@ TEST(test_runs_and_compares)
   assert_contains(answer, ".svg\"");
 }
 
-TEST(test_tells_events)
-{
-  char text[4096] = "", request[256];
-  const int s = connect_to();
-  snprintf(request, sizeof request, "GET %sevents HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n", secret,
-           port);
-  say(s, request, strlen(request));
-  const int id = add_job("{\"action\":\"run\",\"file\":\"disc.yaml\",\"output\":\"e.run\"}");
-  bool seen = false;
-  for (size_t kept = 0; !seen;) { // the end of the job comes unasked
-    struct pollfd ready = {.fd = s, .events = POLLIN};
-    assert_true(poll(&ready, 1, 20000) > 0);
-    const ssize_t got = recv(s, text + kept, sizeof text - 1 - kept, 0);
-    assert_true(got > 0);
-    text[kept + (size_t)got] = '\0';
-    seen = strstr(text, "\"output\":\"e.run\",\"state\":\"done\"") != NULL;
-    kept += (size_t)got;
-    if (kept > sizeof text / 2) {
-      memmove(text, text + kept - 512, 513);
-      kept = 512;
-    }
-  }
-  close(s);
-  assert_string_equal(wait_end(id), "done");
-}
-
-TEST(test_twenty_clients)
-{
-  enum { CLIENTS = 20 };
-  int listeners[CLIENTS];
-  char text[256];
-  const int length = snprintf(text, sizeof text,
-                              "GET %sevents HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n", secret, port);
-  for (size_t i = 0; i < CLIENTS; i++) {
-    listeners[i] = connect_to();
-    say(listeners[i], text, (size_t)length);
-  }
-  for (size_t i = 0; i < CLIENTS; i++) { // each is told what there is
-    assert_int_equal(recv(listeners[i], text, 15, MSG_WAITALL), 15);
-    assert_memory_equal(text, "HTTP/1.1 200 OK", 15);
-  }
-  assert_int_equal(ask("GET", "state", NULL), 200); // and there is room for questions
-  for (size_t i = 0; i < CLIENTS; i++) {
-    close(listeners[i]);
-  }
-}
-
 /* Waits until a run has kept a file. */
 static void wait_points(const char *results)
 {
