@@ -39,25 +39,17 @@ struct listed_array {
 struct filling {
   dea_result *result;
   char folder[NAME_SIZE]; // "lumped/sweep"
-  dea_status status;
 };
 
 /* Adds an array of that many numbers, to be filled by the caller; NULL after a failure. */
 static double *add_array(struct filling *f, const struct dea_column *column, size_t count)
 {
-  struct dea_context *ctx = f->result->ctx->inner;
-  void *moved = f->status == DEA_OK ? api_grow(ctx, f->result->arrays, f->result->array_count,
-                                               &f->result->array_room, sizeof *f->result->arrays)
-                                    : NULL;
-  if (moved != NULL) {
-    f->result->arrays = moved;
-  }
+  dea_result *result = f->result;
   struct listed_array *array =
-      moved != NULL && count < SIZE_MAX / 16
-          ? dea_alloc(ctx, 1, sizeof *array + count * sizeof array->values[0])
-          : NULL;
-  if (array == NULL) {
-    f->status = DEA_E_MEMORY;
+      dea_arena_alloc(&result->memory, 1, sizeof *array + count * sizeof array->values[0]);
+  result->arrays = api_grow(&result->memory, result->arrays, result->array_count,
+                            &result->array_room, sizeof *result->arrays);
+  if (result->memory.failed) {
     return NULL;
   }
   snprintf(array->name, sizeof array->name, "%.*s/%s", NAME_SIZE / 2, f->folder, column->key);
@@ -67,31 +59,17 @@ static double *add_array(struct filling *f, const struct dea_column *column, siz
                              .rank = 1,
                              .shape = {count, 1, 1},
                              .data = array->values};
-  f->result->arrays[f->result->array_count++] = &array->shown;
+  result->arrays[result->array_count++] = &array->shown;
   return array->values;
 }
 
 static void add_text(struct filling *f, const char *key, const char *text)
 {
-  struct dea_context *ctx = f->result->ctx->inner;
-  void *moved = f->status == DEA_OK ? api_grow(ctx, f->result->texts, f->result->text_count,
-                                               &f->result->text_room, sizeof *f->result->texts)
-                                    : NULL;
-  if (moved == NULL) {
-    f->status = DEA_E_MEMORY;
-    return;
-  }
   char name[NAME_SIZE];
   snprintf(name, sizeof name, "%.*s%s%s", NAME_SIZE / 2, f->folder, f->folder[0] != '\0' ? "/" : "",
            key);
-  struct api_setting *entry = &((struct api_setting *)moved)[f->result->text_count];
-  f->result->texts = moved;
-  *entry = (struct api_setting){dea_copy_text(ctx, name, SIZE_MAX),
-                                dea_copy_text(ctx, text != NULL ? text : "", SIZE_MAX)};
-  f->result->text_count++;
-  if (entry->key == NULL || entry->value == NULL) {
-    f->status = DEA_E_MEMORY;
-  }
+  text = text != NULL ? text : "";
+  api_texts_add(&f->result->texts, name, strlen(name), text, strlen(text));
 }
 
 static void enter(struct filling *f, const char *format, ...) DEA_PRINTF(2, 3);
@@ -135,20 +113,15 @@ static void add_events(struct filling *f, const struct dea_curve *curve, const c
 {
   for (int kind = DEA_EVENT_PULL_IN; kind <= (int)DEA_EVENT_BREAKDOWN; kind++) {
     struct dea_load_point *points =
-        dea_alloc(f->result->ctx->inner, curve->event_count, sizeof *points);
+        dea_arena_alloc(&f->result->memory, curve->event_count, sizeof *points);
     size_t count = 0;
-    if (points == NULL) {
-      f->status = DEA_E_MEMORY;
-      return;
-    }
-    for (size_t i = 0; i < curve->event_count; i++) {
+    for (size_t i = 0; points != NULL && i < curve->event_count; i++) {
       if ((int)curve->events[i].kind == kind) {
         points[count++] = curve->events[i].point;
       }
     }
     enter(f, "%s/%s", folder, dea_event_name((enum dea_event_kind)kind));
     add_points(f, points, sizeof *points, count);
-    dea_free(f->result->ctx->inner, points);
   }
 }
 
@@ -238,25 +211,25 @@ static void add_texts(struct filling *f)
   add_text(f, "sha256", p->input_sha256);
 }
 
-static void add_meshes(struct filling *f)
+static dea_status add_meshes(dea_result *result)
 {
-  dea_result *result = f->result;
+  struct dea_context *ctx = result->ctx->inner;
   const struct dea_result *inner = result->inner;
-  result->meshes = dea_alloc(result->ctx->inner, inner->surface_count, sizeof *result->meshes);
-  f->status = result->meshes == NULL ? DEA_E_MEMORY : f->status;
-  for (size_t i = 0; i < inner->surface_count && f->status == DEA_OK; i++) {
+  result->meshes = dea_arena_alloc(&result->memory, inner->surface_count, sizeof *result->meshes);
+  for (size_t i = 0; i < inner->surface_count && !result->memory.failed; i++) {
     const struct dea_surface_record *record = &inner->surfaces[i];
     char name[2 * DEA_NAME_SIZE];
     snprintf(name, sizeof name, "%s/surface/%04zu", record->model, record->point);
-    f->status = api_mesh_create(result->ctx->inner, name, record->voltage_V, record->mesh, false,
-                                &result->meshes[i]);
-    result->mesh_count += f->status == DEA_OK;
+    DEA_TRY(ctx,
+            api_mesh_create(ctx, name, record->voltage_V, record->mesh, false, &result->meshes[i]));
+    result->mesh_count++;
   }
+  return result->memory.failed || result->texts.memory.failed ? DEA_E_MEMORY : DEA_OK;
 }
 
 dea_status api_result_list(dea_result *result)
 {
-  struct filling f = {.result = result, .status = DEA_OK};
+  struct filling f = {.result = result};
   const struct dea_result *inner = result->inner;
   add_texts(&f);
   for (size_t i = 0; i < inner->curve_count; i++) {
@@ -266,8 +239,7 @@ dea_status api_result_list(dea_result *result)
   }
   add_profiles(&f, inner);
   add_variants(&f, inner);
-  add_meshes(&f);
-  return f.status;
+  return add_meshes(result);
 }
 
 // Handles ----------------------------------------------------------------------------------------
@@ -278,19 +250,11 @@ void dea_result_free(dea_result *result)
     return;
   }
   struct dea_context *ctx = result->ctx->inner;
-  for (size_t i = 0; i < result->array_count; i++) {
-    dea_free(ctx, result->arrays[i]);
-  }
-  for (size_t i = 0; i < result->text_count; i++) {
-    dea_free(ctx, result->texts[i].key);
-    dea_free(ctx, result->texts[i].value);
-  }
   for (size_t i = 0; i < result->mesh_count; i++) {
     api_mesh_free(ctx, result->meshes[i]);
   }
-  dea_free(ctx, result->arrays);
-  dea_free(ctx, result->texts);
-  dea_free(ctx, result->meshes);
+  dea_arena_free(&result->texts.memory);
+  dea_arena_free(&result->memory);
   dea_text_free(&result->summary);
   dea_text_free(&result->svg);
   if (result->run != NULL) {
@@ -309,7 +273,7 @@ dea_status api_result_create(dea_context *ctx, struct dea_result_handle contents
   dea_result *result = dea_alloc(inner, 1, sizeof *result);
   *out = NULL;
   contents.ctx = ctx;
-  contents.summary.ctx = contents.svg.ctx = inner;
+  contents.summary.ctx = contents.svg.ctx = contents.memory.ctx = contents.texts.memory.ctx = inner;
   if (result == NULL) {
     if (contents.run != NULL) {
       dea_run_destroy(inner, contents.run);
@@ -380,9 +344,9 @@ dea_status dea_result_text(dea_context *ctx, dea_result *result, const char *nam
   if (strcmp(name, "summary") == 0) {
     return get_summary(ctx, result, out);
   }
-  for (size_t i = 0; i < result->text_count; i++) {
-    if (strcmp(result->texts[i].key, name) == 0) {
-      *out = result->texts[i].value;
+  for (size_t i = 0; i < result->texts.count; i++) {
+    if (strcmp(result->texts.at[i].key, name) == 0) {
+      *out = result->texts.at[i].value;
       return DEA_OK;
     }
   }

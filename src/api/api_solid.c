@@ -10,6 +10,9 @@
 
 static const double bulk_share = 100; // bulk modulus over the shear modulus
 
+// What the engine answers, in turn with other threads, with this function in the chain of calls.
+#define ENGINE(ctx, call) DEA_CHAIN((ctx)->inner, DEA_SOLID_IN_TURN(call))
+
 struct dea_solid_handle {
   dea_context *ctx; // that made it; lent
   const struct dea_solid_access *access;
@@ -260,43 +263,40 @@ static dea_status begin(dea_context *ctx, const dea_solid *solid)
   return api_check_owner(ctx, solid->ctx, "solid");
 }
 
+/* Holds what lies at a place. */
+static dea_status hold(dea_context *ctx, const dea_solid *solid, struct dea_solid_place place,
+                       int components, const double displacement_m[3])
+{
+  DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"low_m", place.low_m, 3, true}, {"high_m", place.high_m, 3, true},
+             {"displacement_m", displacement_m, 3, false});
+  return ENGINE(ctx,
+                solid->access->hold(ctx->inner, solid->object, place, components, displacement_m));
+}
+
 dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m[3],
                           const double high_m[3], int components, const double displacement_m[3])
 {
-  DEA_TRY(ctx->inner, begin(ctx, solid));
-  DOOR_CHECK(ctx, {"low_m", low_m, 3, true}, {"high_m", high_m, 3, true},
-             {"displacement_m", displacement_m, 3, false});
-  return DEA_CHAIN(ctx->inner, DEA_SOLID_IN_TURN(solid->access->hold(
-                                   ctx->inner, solid->object,
-                                   (struct dea_solid_place){low_m, high_m, NULL, NULL, 0},
-                                   components, displacement_m)));
+  return hold(ctx, solid, (struct dea_solid_place){low_m, high_m, NULL, NULL, 0}, components,
+              displacement_m);
 }
 
 dea_status dea_solid_hold_nodes(dea_context *ctx, dea_solid *solid, const int *nodes, size_t count,
                                 int components, const double displacement_m[3])
 {
-  DEA_TRY(ctx->inner, begin(ctx, solid));
-  DOOR_CHECK(ctx, {"displacement_m", displacement_m, 3, false});
-  return DEA_CHAIN(ctx->inner, DEA_SOLID_IN_TURN(solid->access->hold(
-                                   ctx->inner, solid->object,
-                                   (struct dea_solid_place){NULL, NULL, NULL, nodes, count},
-                                   components, displacement_m)));
+  return hold(ctx, solid, (struct dea_solid_place){NULL, NULL, NULL, nodes, count}, components,
+              displacement_m);
 }
 
 dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *curve,
                                 const double low_m[3], const double high_m[3], int components,
                                 const double displacement_m[3])
 {
-  DEA_TRY(ctx->inner, begin(ctx, solid));
-  DOOR_CHECK(ctx, {"low_m", low_m, 3, true}, {"high_m", high_m, 3, true},
-             {"displacement_m", displacement_m, 3, false});
   if ((low_m == NULL) != (high_m == NULL)) {
-    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a box has two corners");
+    return dea_fail(api_begin(ctx), DEA_E_ARGUMENT, "a box has two corners");
   }
-  return DEA_CHAIN(ctx->inner, DEA_SOLID_IN_TURN(solid->access->hold(
-                                   ctx->inner, solid->object,
-                                   (struct dea_solid_place){low_m, high_m, curve, NULL, 0},
-                                   components, displacement_m)));
+  return hold(ctx, solid, (struct dea_solid_place){low_m, high_m, curve, NULL, 0}, components,
+              displacement_m);
 }
 
 dea_status dea_solid_hold_body(dea_context *ctx, dea_solid *solid, size_t body, int components,
@@ -304,9 +304,8 @@ dea_status dea_solid_hold_body(dea_context *ctx, dea_solid *solid, size_t body, 
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DOOR_CHECK(ctx, {"shift_m", shift_m, 3, false}, {"turn_rad", turn_rad, 3, false});
-  return DEA_CHAIN(ctx->inner,
-                   DEA_SOLID_IN_TURN(solid->access->hold_body(ctx->inner, solid->object, body,
-                                                              components, shift_m, turn_rad)));
+  return ENGINE(ctx, solid->access->hold_body(ctx->inner, solid->object, body, components, shift_m,
+                                              turn_rad));
 }
 
 dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
@@ -314,8 +313,8 @@ dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DOOR_CHECK(ctx, {"force_N", force_N, 3, false}, {"moment_N_m", moment_N_m, 3, false});
-  return DEA_CHAIN(ctx->inner, DEA_SOLID_IN_TURN(solid->access->push_body(
-                                   ctx->inner, solid->object, body, force_N, moment_N_m)));
+  return ENGINE(ctx,
+                solid->access->push_body(ctx->inner, solid->object, body, force_N, moment_N_m));
 }
 
 dea_status dea_solid_add_spring(dea_context *ctx, dea_solid *solid, const dea_body_spring *spring)
@@ -334,16 +333,14 @@ dea_status dea_solid_add_spring(dea_context *ctx, dea_solid *solid, const dea_bo
   while (spec.component < 6 && all.component != 1 << spec.component) {
     spec.component++;
   }
-  return DEA_CHAIN(ctx->inner,
-                   DEA_SOLID_IN_TURN(solid->access->add_spring(ctx->inner, solid->object, &spec)));
+  return ENGINE(ctx, solid->access->add_spring(ctx->inner, solid->object, &spec));
 }
 
 dea_status dea_solid_move_spring(dea_context *ctx, dea_solid *solid, size_t spring, double place)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DOOR_CHECK(ctx, {"place", &place, 1, false});
-  return DEA_CHAIN(ctx->inner, DEA_SOLID_IN_TURN(solid->access->move_spring(
-                                   ctx->inner, solid->object, spring, place)));
+  return ENGINE(ctx, solid->access->move_spring(ctx->inner, solid->object, spring, place));
 }
 
 dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m[3],
@@ -352,25 +349,22 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DOOR_CHECK(ctx, {"low_m", low_m, 3, true}, {"high_m", high_m, 3, true},
              {"traction_Pa", traction_Pa, 3, false});
-  return DEA_CHAIN(ctx->inner,
-                   DEA_SOLID_IN_TURN(solid->access->pull(
-                       ctx->inner, solid->object,
-                       (struct dea_solid_place){low_m, high_m, NULL, NULL, 0}, traction_Pa)));
+  return ENGINE(ctx, solid->access->pull(ctx->inner, solid->object,
+                                         (struct dea_solid_place){low_m, high_m, NULL, NULL, 0},
+                                         traction_Pa));
 }
 
 dea_status dea_solid_set_channel(dea_context *ctx, dea_solid *solid, int channel, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DOOR_CHECK(ctx, {"voltage_V", &voltage_V, 1, false});
-  return DEA_CHAIN(ctx->inner, DEA_SOLID_IN_TURN(solid->access->set_channel(
-                                   ctx->inner, solid->object, channel, voltage_V)));
+  return ENGINE(ctx, solid->access->set_channel(ctx->inner, solid->object, channel, voltage_V));
 }
 
 dea_status dea_solid_find_charges(dea_context *ctx, dea_solid *solid)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  return DEA_CHAIN(ctx->inner,
-                   DEA_SOLID_IN_TURN(solid->access->find_charges(ctx->inner, solid->object)));
+  return ENGINE(ctx, solid->access->find_charges(ctx->inner, solid->object));
 }
 
 const dea_solid_setting *dea_solid_setting_at(dea_context *ctx, const dea_solid *solid,
@@ -389,23 +383,20 @@ dea_status dea_solid_set(dea_context *ctx, dea_solid *solid, const char *name, d
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DOOR_CHECK(ctx, {"value", &value, 1, false});
-  return DEA_CHAIN(ctx->inner,
-                   DEA_SOLID_IN_TURN(solid->access->set(ctx->inner, solid->object, name, value)));
+  return ENGINE(ctx, solid->access->set(ctx->inner, solid->object, name, value));
 }
 
 dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DOOR_CHECK(ctx, {"voltage_V", &voltage_V, 1, false});
-  return DEA_CHAIN(ctx->inner,
-                   DEA_SOLID_IN_TURN(solid->access->solve(ctx->inner, solid->object, voltage_V)));
+  return ENGINE(ctx, solid->access->solve(ctx->inner, solid->object, voltage_V));
 }
 
 dea_status dea_solid_modes(dea_context *ctx, dea_solid *solid, size_t count)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  return DEA_CHAIN(ctx->inner,
-                   DEA_SOLID_IN_TURN(solid->access->modes(ctx->inner, solid->object, count)));
+  return ENGINE(ctx, solid->access->modes(ctx->inner, solid->object, count));
 }
 
 dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double voltage_V, double step,
@@ -414,14 +405,13 @@ dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double volta
   DEA_TRY(ctx->inner, begin(ctx, solid));
   DOOR_CHECK(ctx, {"voltage_V", &voltage_V, 1, false}, {"step", &step, 1, false},
              {"unit_m", &unit_m, 1, false});
-  return DEA_CHAIN(ctx->inner, DEA_SOLID_IN_TURN(solid->access->path(ctx->inner, solid->object,
-                                                                     voltage_V, step, unit_m)));
+  return ENGINE(ctx, solid->access->path(ctx->inner, solid->object, voltage_V, step, unit_m));
 }
 
 dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  return DEA_CHAIN(ctx->inner, DEA_SOLID_IN_TURN(solid->access->step(ctx->inner, solid->object)));
+  return ENGINE(ctx, solid->access->step(ctx->inner, solid->object));
 }
 
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,

@@ -52,13 +52,8 @@ static dea_status prepare(dea_context *ctx, const dea_design *design,
   struct dea_context *inner = ctx->inner;
   DEA_TRY(inner, api_design_build(inner, design, &contents->design, &contents->device));
   DEA_TRY(inner, dea_result_create(inner, contents->design, contents->device, &contents->inner));
-  struct dea_override *overrides = api_overrides(inner, design->settings, design->setting_count);
-  DEA_TRY_MEMORY(overrides != NULL);
-  dea_status status =
-      dea_provenance_fill(inner, design->bytes, design->length, overrides, design->setting_count,
-                          NULL, &contents->inner->provenance);
-  dea_free(inner, overrides);
-  return status;
+  return dea_provenance_fill(inner, design->bytes, design->length, design->settings.at,
+                             design->settings.count, NULL, &contents->inner->provenance);
 }
 
 /* Studies, and the folder. The status of the studies comes before that of the folder. */
