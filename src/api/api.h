@@ -107,20 +107,10 @@ dea_status api_design_build(struct dea_context *ctx, const dea_design *design,
 dea_status api_design_create(dea_context *ctx, const char *name, const char *text, const char *set,
                              dea_design **out);
 
-/* The options with defaults for what the caller does not know. */
-dea_run_options api_run_options(const dea_run_options *options);
 /* DEA_E_ARGUMENT for a model that is none. */
 dea_status api_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out);
-
-/* Fills the list of arrays and texts of a result. */
-dea_status api_result_list(dea_result *result);
-/* A handle for what was computed; takes design, device and inner (or run), also on failure. */
-dea_status api_result_create(dea_context *ctx, struct dea_result_handle contents, dea_result **out);
 
 /* The public form of a mesh; name: copied. inner: lent, or owned if `own`. */
 dea_status api_mesh_create(struct dea_context *ctx, const char *name, double voltage_V,
                            struct dea_field_mesh *inner, bool own, struct api_mesh **out);
 void api_mesh_free(struct dea_context *ctx, struct api_mesh *mesh);
-
-/* Adds the pictures of a fragment of a report as one SVG. */
-void api_svg_add(struct dea_text *out, const char *fragment);
