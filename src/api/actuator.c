@@ -48,6 +48,21 @@ const dea_study_info *dea_study_at(dea_context *ctx, size_t index)
   return &ctx->study;
 }
 
+dea_status api_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out)
+{
+  *out = dea_model_find(name);
+  if (*out == NULL) {
+    size_t count;
+    const struct dea_model_type *const *all = dea_model_all(&count);
+    const char *known[16];
+    for (size_t i = 0; i < count && i < sizeof known / sizeof known[0]; i++) {
+      known[i] = all[i]->name;
+    }
+    return api_unknown(ctx, "model", name, known, count);
+  }
+  return DEA_OK;
+}
+
 struct dea_actuator_handle {
   dea_context *ctx; // that made it; lent
   struct dea_design *design;

@@ -1,6 +1,7 @@
 /* What the files of the public interface share: the objects behind its handles. */
 #pragma once
 
+#include "base/arena.h"
 #include "base/context.h"
 #include "base/text.h"
 #include "design/design.h"
@@ -24,17 +25,18 @@ struct dea_context_handle {
   char law_parameters[256];
 };
 
-/* A value of a design that was set. Both owned. */
-struct api_setting {
-  char *key, *value;
+/* Pairs of texts: values of a design that were set, texts of a result under their names. */
+struct api_texts {
+  struct dea_arena memory; // of all of it
+  struct dea_override *at; // [count]
+  size_t count, room;
 };
 
 struct dea_design_handle {
   dea_context *ctx; // that made it; lent
   char *name, *bytes;
   size_t length; // of bytes, which are the design as it was read
-  struct api_setting *settings;
-  size_t setting_count;
+  struct api_texts settings;
   struct dea_design *inner; // with what was set
   dea_value *values;        // of inner, [inner->values.count]
   struct dea_text text, svg;
@@ -47,10 +49,10 @@ struct dea_result_handle {
   struct dea_device *device;
   struct dea_run *run; // of one that was read; owns inner then
   struct dea_result *inner;
-  dea_array **arrays; // [array_count]
+  struct dea_arena memory; // of the arrays
+  dea_array **arrays;      // [array_count]
   size_t array_count, array_room;
-  struct api_setting *texts; // [text_count], under their names
-  size_t text_count, text_room;
+  struct api_texts texts;
   struct api_mesh **meshes; // [mesh_count]
   size_t mesh_count;
   struct dea_text summary, svg;
@@ -90,8 +92,12 @@ dea_status api_check_numbers(dea_context *ctx, const struct api_numbers *numbers
 /* "there is no WHAT 'NAME'", with the nearest of those that there are. */
 dea_status api_unknown(dea_context *ctx, const char *what, const char *name,
                        const char *const known[], size_t count);
-/* Grows an array by one item of that size: returns where the items are now, NULL without memory. */
-void *api_grow(struct dea_context *ctx, void *items, size_t count, size_t *capacity, size_t size);
+/* Room for one more item of that size in an array in the arena: where the items are now, NULL
+ * without memory. */
+void *api_grow(struct dea_arena *memory, void *items, size_t count, size_t *capacity, size_t size);
+/* Adds a pair of copies; without memory the arena has failed. */
+void api_texts_add(struct api_texts *texts, const char *key, size_t key_length, const char *value,
+                   size_t value_length);
 
 /* A design's own copy of its inner form, and its device; both owned by the caller, also after a
  * failure. Findings of the design are added. */
@@ -100,24 +106,11 @@ dea_status api_design_build(struct dea_context *ctx, const dea_design *design,
 /* A design of a text and of what was set, "key=value" a line (NULL: nothing). */
 dea_status api_design_create(dea_context *ctx, const char *name, const char *text, const char *set,
                              dea_design **out);
-/* Settings as overrides; owned by the caller, the texts lent. */
-struct dea_override *api_overrides(struct dea_context *ctx, const struct api_setting *settings,
-                                   size_t count);
 
-/* The options with defaults for what the caller does not know. */
-dea_run_options api_run_options(const dea_run_options *options);
 /* DEA_E_ARGUMENT for a model that is none. */
 dea_status api_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out);
-
-/* Fills the list of arrays and texts of a result. */
-dea_status api_result_list(dea_result *result);
-/* A handle for what was computed; takes design, device and inner (or run), also on failure. */
-dea_status api_result_create(dea_context *ctx, struct dea_result_handle contents, dea_result **out);
 
 /* The public form of a mesh; name: copied. inner: lent, or owned if `own`. */
 dea_status api_mesh_create(struct dea_context *ctx, const char *name, double voltage_V,
                            struct dea_field_mesh *inner, bool own, struct api_mesh **out);
 void api_mesh_free(struct dea_context *ctx, struct api_mesh *mesh);
-
-/* Adds the pictures of a fragment of a report as one SVG. */
-void api_svg_add(struct dea_text *out, const char *fragment);

@@ -172,15 +172,32 @@ dea_status api_unknown(dea_context *ctx, const char *what, const char *name,
              : dea_fail(ctx->inner, DEA_E_ARGUMENT, "there is no %s '%.100s'", what, name);
 }
 
-void *api_grow(struct dea_context *ctx, void *items, size_t count, size_t *capacity, size_t size)
+void *api_grow(struct dea_arena *memory, void *items, size_t count, size_t *capacity, size_t size)
 {
   if (count < *capacity) {
     return items;
   }
-  size_t wanted = *capacity > 0 ? 2 * *capacity : 32;
-  void *moved = dea_resize(ctx, items, wanted, size);
-  if (moved != NULL) {
-    *capacity = wanted;
+  *capacity = *capacity > 0 ? 2 * *capacity : 32;
+  void *moved = dea_arena_alloc(memory, *capacity, size);
+  if (moved != NULL && count > 0) {
+    memcpy(moved, items, count * size);
   }
   return moved;
+}
+
+static const char *copy(struct dea_arena *memory, const char *text, size_t length)
+{
+  char *made = dea_arena_alloc(memory, length + 1, 1);
+  return made != NULL ? memcpy(made, text, length) : NULL;
+}
+
+void api_texts_add(struct api_texts *texts, const char *key, size_t key_length, const char *value,
+                   size_t value_length)
+{
+  texts->at = api_grow(&texts->memory, texts->at, texts->count, &texts->room, sizeof *texts->at);
+  const struct dea_override pair = {copy(&texts->memory, key, key_length),
+                                    copy(&texts->memory, value, value_length)};
+  if (!texts->memory.failed) {
+    texts->at[texts->count++] = pair;
+  }
 }

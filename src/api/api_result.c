@@ -5,17 +5,21 @@
 #include "figures/run_figures.h"
 #include "io/summary.h"
 #include "job/design_of_run.h"
+#include "job/job.h"
 #include "job/run_folder.h"
 #include "plot/plot_svg.h"
 #include "result/columns.h"
+#include "result/provenance.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-dea_run_options api_run_options(const dea_run_options *options)
+/* The options with defaults for what the caller does not know. */
+static dea_run_options run_options_of(const dea_run_options *options)
 {
   dea_run_options all = DEA_RUN_OPTIONS_INIT;
   if (options != NULL) { // of an older or a newer caller
@@ -39,25 +43,17 @@ struct listed_array {
 struct filling {
   dea_result *result;
   char folder[NAME_SIZE]; // "lumped/sweep"
-  dea_status status;
 };
 
 /* Adds an array of that many numbers, to be filled by the caller; NULL after a failure. */
 static double *add_array(struct filling *f, const struct dea_column *column, size_t count)
 {
-  struct dea_context *ctx = f->result->ctx->inner;
-  void *moved = f->status == DEA_OK ? api_grow(ctx, f->result->arrays, f->result->array_count,
-                                               &f->result->array_room, sizeof *f->result->arrays)
-                                    : NULL;
-  if (moved != NULL) {
-    f->result->arrays = moved;
-  }
+  dea_result *result = f->result;
   struct listed_array *array =
-      moved != NULL && count < SIZE_MAX / 16
-          ? dea_alloc(ctx, 1, sizeof *array + count * sizeof array->values[0])
-          : NULL;
-  if (array == NULL) {
-    f->status = DEA_E_MEMORY;
+      dea_arena_alloc(&result->memory, 1, sizeof *array + count * sizeof array->values[0]);
+  result->arrays = api_grow(&result->memory, result->arrays, result->array_count,
+                            &result->array_room, sizeof *result->arrays);
+  if (result->memory.failed) {
     return NULL;
   }
   snprintf(array->name, sizeof array->name, "%.*s/%s", NAME_SIZE / 2, f->folder, column->key);
@@ -67,31 +63,17 @@ static double *add_array(struct filling *f, const struct dea_column *column, siz
                              .rank = 1,
                              .shape = {count, 1, 1},
                              .data = array->values};
-  f->result->arrays[f->result->array_count++] = &array->shown;
+  result->arrays[result->array_count++] = &array->shown;
   return array->values;
 }
 
 static void add_text(struct filling *f, const char *key, const char *text)
 {
-  struct dea_context *ctx = f->result->ctx->inner;
-  void *moved = f->status == DEA_OK ? api_grow(ctx, f->result->texts, f->result->text_count,
-                                               &f->result->text_room, sizeof *f->result->texts)
-                                    : NULL;
-  if (moved == NULL) {
-    f->status = DEA_E_MEMORY;
-    return;
-  }
   char name[NAME_SIZE];
   snprintf(name, sizeof name, "%.*s%s%s", NAME_SIZE / 2, f->folder, f->folder[0] != '\0' ? "/" : "",
            key);
-  struct api_setting *entry = &((struct api_setting *)moved)[f->result->text_count];
-  f->result->texts = moved;
-  *entry = (struct api_setting){dea_copy_text(ctx, name, SIZE_MAX),
-                                dea_copy_text(ctx, text != NULL ? text : "", SIZE_MAX)};
-  f->result->text_count++;
-  if (entry->key == NULL || entry->value == NULL) {
-    f->status = DEA_E_MEMORY;
-  }
+  text = text != NULL ? text : "";
+  api_texts_add(&f->result->texts, name, strlen(name), text, strlen(text));
 }
 
 static void enter(struct filling *f, const char *format, ...) DEA_PRINTF(2, 3);
@@ -135,20 +117,15 @@ static void add_events(struct filling *f, const struct dea_curve *curve, const c
 {
   for (int kind = DEA_EVENT_PULL_IN; kind <= (int)DEA_EVENT_BREAKDOWN; kind++) {
     struct dea_load_point *points =
-        dea_alloc(f->result->ctx->inner, curve->event_count, sizeof *points);
+        dea_arena_alloc(&f->result->memory, curve->event_count, sizeof *points);
     size_t count = 0;
-    if (points == NULL) {
-      f->status = DEA_E_MEMORY;
-      return;
-    }
-    for (size_t i = 0; i < curve->event_count; i++) {
+    for (size_t i = 0; points != NULL && i < curve->event_count; i++) {
       if ((int)curve->events[i].kind == kind) {
         points[count++] = curve->events[i].point;
       }
     }
     enter(f, "%s/%s", folder, dea_event_name((enum dea_event_kind)kind));
     add_points(f, points, sizeof *points, count);
-    dea_free(f->result->ctx->inner, points);
   }
 }
 
@@ -238,25 +215,26 @@ static void add_texts(struct filling *f)
   add_text(f, "sha256", p->input_sha256);
 }
 
-static void add_meshes(struct filling *f)
+static dea_status add_meshes(dea_result *result)
 {
-  dea_result *result = f->result;
+  struct dea_context *ctx = result->ctx->inner;
   const struct dea_result *inner = result->inner;
-  result->meshes = dea_alloc(result->ctx->inner, inner->surface_count, sizeof *result->meshes);
-  f->status = result->meshes == NULL ? DEA_E_MEMORY : f->status;
-  for (size_t i = 0; i < inner->surface_count && f->status == DEA_OK; i++) {
+  result->meshes = dea_arena_alloc(&result->memory, inner->surface_count, sizeof *result->meshes);
+  for (size_t i = 0; i < inner->surface_count && !result->memory.failed; i++) {
     const struct dea_surface_record *record = &inner->surfaces[i];
     char name[2 * DEA_NAME_SIZE];
     snprintf(name, sizeof name, "%s/surface/%04zu", record->model, record->point);
-    f->status = api_mesh_create(result->ctx->inner, name, record->voltage_V, record->mesh, false,
-                                &result->meshes[i]);
-    result->mesh_count += f->status == DEA_OK;
+    DEA_TRY(ctx,
+            api_mesh_create(ctx, name, record->voltage_V, record->mesh, false, &result->meshes[i]));
+    result->mesh_count++;
   }
+  return result->memory.failed || result->texts.memory.failed ? DEA_E_MEMORY : DEA_OK;
 }
 
-dea_status api_result_list(dea_result *result)
+/* Fills the list of arrays and texts of a result. */
+static dea_status list_result(dea_result *result)
 {
-  struct filling f = {.result = result, .status = DEA_OK};
+  struct filling f = {.result = result};
   const struct dea_result *inner = result->inner;
   add_texts(&f);
   for (size_t i = 0; i < inner->curve_count; i++) {
@@ -266,8 +244,7 @@ dea_status api_result_list(dea_result *result)
   }
   add_profiles(&f, inner);
   add_variants(&f, inner);
-  add_meshes(&f);
-  return f.status;
+  return add_meshes(result);
 }
 
 // Handles ----------------------------------------------------------------------------------------
@@ -278,19 +255,11 @@ void dea_result_free(dea_result *result)
     return;
   }
   struct dea_context *ctx = result->ctx->inner;
-  for (size_t i = 0; i < result->array_count; i++) {
-    dea_free(ctx, result->arrays[i]);
-  }
-  for (size_t i = 0; i < result->text_count; i++) {
-    dea_free(ctx, result->texts[i].key);
-    dea_free(ctx, result->texts[i].value);
-  }
   for (size_t i = 0; i < result->mesh_count; i++) {
     api_mesh_free(ctx, result->meshes[i]);
   }
-  dea_free(ctx, result->arrays);
-  dea_free(ctx, result->texts);
-  dea_free(ctx, result->meshes);
+  dea_arena_free(&result->texts.memory);
+  dea_arena_free(&result->memory);
   dea_text_free(&result->summary);
   dea_text_free(&result->svg);
   if (result->run != NULL) {
@@ -303,13 +272,15 @@ void dea_result_free(dea_result *result)
   dea_free(ctx, result);
 }
 
-dea_status api_result_create(dea_context *ctx, struct dea_result_handle contents, dea_result **out)
+/* A handle for what was computed; takes design, device and inner (or run), also on failure. */
+static dea_status create_result(dea_context *ctx, struct dea_result_handle contents,
+                                dea_result **out)
 {
   struct dea_context *inner = ctx->inner;
   dea_result *result = dea_alloc(inner, 1, sizeof *result);
   *out = NULL;
   contents.ctx = ctx;
-  contents.summary.ctx = contents.svg.ctx = inner;
+  contents.summary.ctx = contents.svg.ctx = contents.memory.ctx = contents.texts.memory.ctx = inner;
   if (result == NULL) {
     if (contents.run != NULL) {
       dea_run_destroy(inner, contents.run);
@@ -321,7 +292,7 @@ dea_status api_result_create(dea_context *ctx, struct dea_result_handle contents
     return DEA_E_MEMORY;
   }
   *result = contents;
-  dea_status status = api_result_list(result);
+  dea_status status = list_result(result);
   if (status != DEA_OK) {
     dea_result_free(result);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
@@ -380,9 +351,9 @@ dea_status dea_result_text(dea_context *ctx, dea_result *result, const char *nam
   if (strcmp(name, "summary") == 0) {
     return get_summary(ctx, result, out);
   }
-  for (size_t i = 0; i < result->text_count; i++) {
-    if (strcmp(result->texts[i].key, name) == 0) {
-      *out = result->texts[i].value;
+  for (size_t i = 0; i < result->texts.count; i++) {
+    if (strcmp(result->texts.at[i].key, name) == 0) {
+      *out = result->texts.at[i].value;
       return DEA_OK;
     }
   }
@@ -390,6 +361,100 @@ dea_status dea_result_text(dea_context *ctx, dea_result *result, const char *nam
 }
 
 // Figures and files ------------------------------------------------------------------------------
+
+enum { KEY_LINE = 22, KEY_COLUMN = 300, MARGIN = 8 };
+
+// web/report.css, without variables: not every program that shows SVG knows them
+static const char style[] =
+    "svg{font-family:'DejaVu Sans',Helvetica,Arial,sans-serif}text{font-size:13px;fill:#1c2430}"
+    ".tics text{font-size:12px;fill:#566173}.it{font-style:italic}.small{font-size:75%}"
+    ".grid path{stroke:#d9dee6;fill:none}.frame{stroke:#566173;stroke-width:1.2;fill:none}"
+    ".line{fill:none;stroke-width:2.2;stroke-linejoin:round}.dashed{stroke-dasharray:7 5}"
+    ".dotted{stroke-dasharray:1.5 4}.mark{fill:#fff;stroke-width:1.6}.band{fill:#f6e3d8}"
+    ".limits path{stroke:#707070;stroke-dasharray:4 3}.limits text{font-size:12px}"
+    ".c0{stroke:#0072b2}.c1{stroke:#d55e00}.c2{stroke:#009e73}.c3{stroke:#b85c94}.c4{stroke:#"
+    "c98a00}"
+    ".c5{stroke:#3d9fd6}.c6{stroke:#1c2430}.c7{stroke:#707070}";
+
+/* A drawing within a fragment. */
+struct drawing {
+  const char *inside; // after "<svg"
+  size_t length;      // up to and with "</svg>"
+  double width, height;
+  const char *after;
+};
+
+/* The next drawing, of those with this beginning; false when there is none. */
+static bool next_drawing(const char *from, const char *begin, struct drawing *out)
+{
+  const char *start = strstr(from, begin);
+  const char *end = start != NULL ? strstr(start, "</svg>") : NULL;
+  const char *box = start != NULL ? strstr(start, "viewBox=\"0 0 ") : NULL;
+  if (end == NULL || box == NULL || box > end) {
+    return false;
+  }
+  char *rest;
+  out->inside = start + strlen("<svg");
+  out->after = end + strlen("</svg>");
+  out->length = (size_t)(out->after - out->inside);
+  out->width = strtod(box + strlen("viewBox=\"0 0 "), &rest);
+  out->height = strtod(rest, NULL);
+  return true;
+}
+
+static bool is_sample(const struct drawing *drawing)
+{
+  return strncmp(drawing->inside, " class=\"sample\"", strlen(" class=\"sample\"")) == 0;
+}
+
+static void add_drawing(struct dea_text *out, const struct drawing *drawing, double x, double y)
+{
+  dea_text_add(out, "<svg x=\"%.0f\" y=\"%.0f\" width=\"%.0f\" height=\"%.0f\"%.*s\n", x, y,
+               drawing->width, drawing->height, (int)drawing->length, drawing->inside);
+}
+
+/* The lines of a plot's key below it; returns where they end. */
+static double add_key(struct dea_text *out, const char *fragment, double y)
+{
+  struct drawing sample;
+  int count = 0;
+  for (const char *at = fragment; next_drawing(at, "<svg class=\"sample\"", &sample); count++) {
+    const char *end = strstr(sample.after, "</li>");
+    const int row = count / 2;
+    double x = MARGIN + count % 2 * KEY_COLUMN, line = y + row * KEY_LINE;
+    int length = end != NULL ? (int)(end - sample.after) : 0;
+    add_drawing(out, &sample, x, line);
+    dea_text_add(out, "<text x=\"%.0f\" y=\"%.0f\">%.*s</text>\n", x + 36, line + 11, length,
+                 sample.after);
+    at = sample.after;
+  }
+  const int rows = (count + 1) / 2;
+  return y + rows * KEY_LINE;
+}
+
+/* Adds the drawings of a fragment of the report's page as one SVG of its own: one below the other,
+ * with the page's colours and the key of a plot. */
+static void add_svg(struct dea_text *out, const char *fragment)
+{
+  struct dea_text inside = {.ctx = out->ctx};
+  struct drawing drawing;
+  double width = 0, y = MARGIN;
+  for (const char *at = fragment; next_drawing(at, "<svg", &drawing); at = drawing.after) {
+    if (!is_sample(&drawing)) {
+      add_drawing(&inside, &drawing, MARGIN, y);
+      width = drawing.width > width ? drawing.width : width;
+      y += drawing.height + MARGIN;
+    }
+  }
+  y = add_key(&inside, fragment, y);
+  dea_text_add(out,
+               "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" "
+               "viewBox=\"0 0 %.0f %.0f\"><style>%s</style>"
+               "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n%s</svg>\n",
+               width + 2 * MARGIN, y, width + 2 * MARGIN, y, style, dea_text_get(&inside));
+  out->failed = out->failed || inside.failed;
+  dea_text_free(&inside);
+}
 
 /* Draws a figure into svg; nothing when it has nothing to show. */
 static dea_status draw(struct dea_context *ctx, const struct dea_result *inner,
@@ -402,7 +467,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_result *inner,
   if (status == DEA_OK && dea_plot_shows(plot)) {
     void *locale = dea_c_locale_enter();
     dea_plot_add_svg(&fragment, plot, 1);
-    api_svg_add(svg, dea_text_get(&fragment));
+    add_svg(svg, dea_text_get(&fragment));
     dea_c_locale_leave(locale);
     status = fragment.failed || svg->failed ? DEA_E_MEMORY : DEA_OK;
   }
@@ -441,7 +506,7 @@ dea_status dea_result_svg(dea_context *ctx, dea_result *result, const char *figu
 dea_status dea_result_write(dea_context *ctx, const dea_result *result, const char *folder,
                             const dea_run_options *options)
 {
-  const dea_run_options all = api_run_options(options);
+  const dea_run_options all = run_options_of(options);
   const struct dea_run_folder_options inner = {.force = all.replace != 0,
                                                .no_figures = all.no_figures != 0};
   DEA_TRY(ctx->inner, dea_run_folder_prepare(ctx->inner, folder, inner.force));
@@ -488,7 +553,7 @@ dea_status dea_result_open(dea_context *ctx, const char *path, dea_result **out)
     dea_run_destroy(inner, contents.run);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
   }
-  return DEA_CHAIN(inner, api_result_create(ctx, contents, out));
+  return DEA_CHAIN(inner, create_result(ctx, contents, out));
 }
 
 dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_design **out)
@@ -503,4 +568,85 @@ dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_des
       ctx->inner,
       api_design_create(ctx, result->run != NULL ? result->run->design_file : result->design->file,
                         p->input, p->overrides, out));
+}
+
+// dea_run: design -> models -> studies -> result -------------------------------------------------
+
+/* The models that are asked for, or those of the design. */
+static dea_status choose_models(dea_context *ctx, const dea_run_options *options,
+                                const struct dea_design *design, struct dea_job *job)
+{
+  bool given = options->model_count > 0;
+  size_t count = given ? options->model_count : design->compute.model_count;
+  if (count > DEA_DESIGN_MODELS_MAX) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "%zu models are too many", count);
+  }
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(ctx->inner,
+            api_model_find(ctx, given ? options->models[i] : design->compute.models[i].text,
+                           &job->models[i]));
+    for (size_t k = 0; k < i; k++) {
+      if (job->models[k] == job->models[i]) {
+        return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the model '%s' is given twice",
+                        job->models[i]->name);
+      }
+    }
+  }
+  job->model_count = count;
+  return DEA_OK;
+}
+
+/* What is built for a run; all owned by the caller, also after a failure. */
+static dea_status prepare(dea_context *ctx, const dea_design *design,
+                          struct dea_result_handle *contents)
+{
+  struct dea_context *inner = ctx->inner;
+  DEA_TRY(inner, api_design_build(inner, design, &contents->design, &contents->device));
+  DEA_TRY(inner, dea_result_create(inner, contents->design, contents->device, &contents->inner));
+  return dea_provenance_fill(inner, design->bytes, design->length, design->settings.at,
+                             design->settings.count, NULL, &contents->inner->provenance);
+}
+
+/* Studies, and the folder. The status of the studies comes before that of the folder. */
+static dea_status compute(dea_context *ctx, struct dea_job *job, struct dea_result *result,
+                          bool *began)
+{
+  char message[1024];
+  dea_status status = dea_job_run(ctx->inner, job, result, began);
+  snprintf(message, sizeof message, "%s", dea_context_message(ctx->inner));
+  dea_status written = *began ? dea_job_write(ctx->inner, job, result) : DEA_OK;
+  dea_job_end(ctx->inner, job);
+  if (status != DEA_OK && *began) {
+    dea_fail(ctx->inner, status, "%s", message); // not what the writer said
+  }
+  return status != DEA_OK ? status : written;
+}
+
+dea_status dea_run(dea_context *ctx, const dea_design *design, const dea_run_options *options,
+                   dea_result **out)
+{
+  struct dea_context *inner = api_begin(ctx);
+  struct dea_result_handle contents = {.ctx = ctx};
+  const dea_run_options all = run_options_of(options);
+  struct dea_job job = {.studies = all.study_count > 0 ? all.studies : NULL,
+                        .study_count = all.study_count,
+                        .folder = all.folder,
+                        .force = all.replace != 0,
+                        .resume = all.resume != 0,
+                        .no_figures = all.no_figures != 0};
+  bool began = false;
+  *out = NULL;
+  ctx->running = true;
+  dea_status status = prepare(ctx, design, &contents);
+  status = status == DEA_OK ? choose_models(ctx, &all, contents.design, &job) : status;
+  status = status == DEA_OK ? compute(ctx, &job, contents.inner, &began) : status;
+  ctx->running = false;
+  if (!began) {
+    dea_result_destroy(inner, contents.inner);
+    dea_device_destroy(inner, contents.device);
+    dea_design_destroy(inner, contents.design);
+    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
+  }
+  dea_status made = create_result(ctx, contents, out);
+  return made != DEA_OK ? made : status;
 }

@@ -13,35 +13,20 @@
 #include <stdint.h>
 #include <string.h>
 
-struct dea_override *api_overrides(struct dea_context *ctx, const struct api_setting *settings,
-                                   size_t count)
-{
-  struct dea_override *overrides = dea_alloc(ctx, count, sizeof *overrides);
-  for (size_t i = 0; overrides != NULL && i < count; i++) {
-    overrides[i] = (struct dea_override){settings[i].key, settings[i].value};
-  }
-  return overrides;
-}
-
 /* The design with settings in the place of its own. */
 static dea_status read_with(struct dea_context *ctx, const dea_design *design,
-                            const struct api_setting *settings, size_t count,
-                            struct dea_design **out)
+                            const struct api_texts *settings, struct dea_design **out)
 {
   *out = NULL;
-  struct dea_override *overrides = api_overrides(ctx, settings, count);
-  DEA_TRY_MEMORY(overrides != NULL);
-  dea_status status = dea_design_read_memory(ctx, design->name, design->bytes, design->length,
-                                             overrides, count, out);
-  dea_free(ctx, overrides);
-  return status;
+  return dea_design_read_memory(ctx, design->name, design->bytes, design->length, settings->at,
+                                settings->count, out);
 }
 
 dea_status api_design_build(struct dea_context *ctx, const dea_design *design,
                             struct dea_design **inner, struct dea_device **device)
 {
   *device = NULL;
-  DEA_TRY(ctx, read_with(ctx, design, design->settings, design->setting_count, inner));
+  DEA_TRY(ctx, read_with(ctx, design, &design->settings, inner));
   return DEA_CHAIN(ctx, dea_device_build(ctx, *inner, device));
 }
 
@@ -73,22 +58,13 @@ static dea_status read_inner(struct dea_context *ctx, dea_design *design, struct
   return DEA_OK;
 }
 
-static void free_settings(struct dea_context *ctx, struct api_setting *settings, size_t count)
-{
-  for (size_t i = 0; settings != NULL && i < count; i++) {
-    dea_free(ctx, settings[i].key);
-    dea_free(ctx, settings[i].value);
-  }
-  dea_free(ctx, settings);
-}
-
 void dea_design_free(dea_design *design)
 {
   if (design == NULL) {
     return;
   }
   struct dea_context *ctx = design->ctx->inner;
-  free_settings(ctx, design->settings, design->setting_count);
+  dea_arena_free(&design->settings.memory);
   dea_design_destroy(ctx, design->inner);
   dea_text_free(&design->text);
   dea_text_free(&design->svg);
@@ -100,12 +76,12 @@ void dea_design_free(dea_design *design)
 
 /* A design of these bytes (copied) and settings (taken, also on failure). */
 static dea_status build(dea_context *owner, const char *name, const char *bytes, size_t length,
-                        struct api_setting *settings, size_t setting_count, dea_design **out)
+                        struct api_texts settings, dea_design **out)
 {
   struct dea_context *ctx = owner->inner;
-  dea_design *design = dea_alloc(ctx, 1, sizeof *design);
+  dea_design *design = settings.memory.failed ? NULL : dea_alloc(ctx, 1, sizeof *design);
   if (design == NULL) {
-    free_settings(ctx, settings, setting_count);
+    dea_arena_free(&settings.memory);
     return DEA_E_MEMORY;
   }
   *design = (dea_design){.ctx = owner,
@@ -113,13 +89,12 @@ static dea_status build(dea_context *owner, const char *name, const char *bytes,
                          .bytes = dea_copy_text(ctx, bytes, length),
                          .length = length,
                          .settings = settings,
-                         .setting_count = setting_count,
                          .text = {.ctx = ctx},
                          .svg = {.ctx = ctx}};
   struct dea_design *inner = NULL;
   dea_status status = DEA_E_MEMORY;
   if (design->name != NULL && design->bytes != NULL) {
-    status = read_with(ctx, design, settings, setting_count, &inner);
+    status = read_with(ctx, design, &design->settings, &inner);
   }
   status = status == DEA_OK ? read_inner(ctx, design, inner) : status;
   if (status != DEA_OK) {
@@ -137,7 +112,7 @@ dea_status dea_design_open(dea_context *ctx, const char *path, dea_design **out)
   *out = NULL;
   api_begin(ctx);
   DEA_TRY(ctx->inner, dea_file_read(ctx->inner, path, DEA_YAML_SIZE_MAX, &bytes, &length));
-  dea_status status = build(ctx, path, bytes, length, NULL, 0, out);
+  dea_status status = build(ctx, path, bytes, length, (struct api_texts){0}, out);
   dea_free(ctx->inner, bytes);
   return status;
 }
@@ -146,121 +121,72 @@ dea_status dea_design_parse(dea_context *ctx, const char *text, const char *name
 {
   *out = NULL;
   api_begin(ctx);
-  return DEA_CHAIN(ctx->inner,
-                   build(ctx, name != NULL ? name : "design", text, strlen(text), NULL, 0, out));
-}
-
-/* Number of lines of the form "key=value" in a text; their places into settings, if not NULL:
- * copies. *failed: set when there is no memory. */
-static size_t split_settings(struct dea_context *ctx, const char *text,
-                             struct api_setting *settings, bool *failed)
-{
-  size_t count = 0;
-  for (const char *line = text; line != NULL && *line != '\0';) {
-    size_t length = strcspn(line, "\n"), key = strcspn(line, "=");
-    if (key < length) {
-      if (settings != NULL) {
-        settings[count].key = dea_copy_text(ctx, line, key);
-        settings[count].value = dea_copy_text(ctx, line + key + 1, length - key - 1);
-        *failed = *failed || settings[count].key == NULL || settings[count].value == NULL;
-      }
-      count++;
-    }
-    line += length + (line[length] == '\n');
-  }
-  return count;
+  return DEA_CHAIN(ctx->inner, build(ctx, name != NULL ? name : "design", text, strlen(text),
+                                     (struct api_texts){0}, out));
 }
 
 dea_status api_design_create(dea_context *ctx, const char *name, const char *text, const char *set,
                              dea_design **out)
 {
-  bool failed = false;
-  size_t count = split_settings(ctx->inner, set, NULL, &failed);
-  struct api_setting *settings = dea_alloc(ctx->inner, count, sizeof *settings);
-  if (settings != NULL) {
-    split_settings(ctx->inner, set, settings, &failed);
-  }
-  if (settings == NULL || failed) {
-    free_settings(ctx->inner, settings, count);
-    return DEA_E_MEMORY;
-  }
-  return DEA_CHAIN(ctx->inner, build(ctx, name, text, strlen(text), settings, count, out));
-}
-
-/* Where a key is among settings; count when it is not there. */
-static size_t find_setting(const struct api_setting *settings, size_t count, const char *key)
-{
-  size_t i = 0;
-  while (i < count && strcmp(settings[i].key, key) != 0) {
-    i++;
-  }
-  return i;
-}
-
-/* Copies the settings of a design and puts more of them at their end, each key once: the last one
- * holds. out: owned by the caller, NULL on failure. */
-static dea_status join_settings(struct dea_context *ctx, const dea_design *design,
-                                const char *const *keys, const char *const *values, size_t count,
-                                struct api_setting **out, size_t *out_count)
-{
-  struct api_setting *settings = dea_alloc(ctx, design->setting_count + count, sizeof *settings);
-  size_t n = 0;
-  bool failed = settings == NULL;
-  for (size_t i = 0; !failed && i < design->setting_count + count; i++) {
-    bool old = i < design->setting_count;
-    const char *key = old ? design->settings[i].key : keys[i - design->setting_count];
-    const char *value = old ? design->settings[i].value : values[i - design->setting_count];
-    size_t at = find_setting(settings, n, key);
-    if (at < n) { // goes to the end: a section may have been set since
-      dea_free(ctx, settings[at].key);
-      dea_free(ctx, settings[at].value);
-      memmove(&settings[at], &settings[at + 1], (n - at - 1) * sizeof *settings);
-      n--;
+  struct api_texts settings = {.memory = {.ctx = ctx->inner}};
+  for (const char *line = set; line != NULL && *line != '\0';) { // "key=value"
+    size_t length = strcspn(line, "\n"), key = strcspn(line, "=");
+    if (key < length) {
+      api_texts_add(&settings, line, key, line + key + 1, length - key - 1);
     }
-    settings[n].key = dea_copy_text(ctx, key, SIZE_MAX);
-    settings[n].value = dea_copy_text(ctx, value, SIZE_MAX);
-    failed = settings[n].key == NULL || settings[n].value == NULL;
-    n++;
+    line += length + (line[length] == '\n');
   }
-  if (failed) {
-    free_settings(ctx, settings, n);
-    settings = NULL;
+  return DEA_CHAIN(ctx->inner, build(ctx, name, text, strlen(text), settings, out));
+}
+
+/* The settings of a design and more of them at their end, each key once: the last one holds. Owned
+ * by the caller. */
+static struct api_texts join_settings(struct dea_context *ctx, const dea_design *design,
+                                      const char *const *keys, const char *const *values,
+                                      size_t count)
+{
+  const struct api_texts *own = &design->settings;
+  struct api_texts settings = {.memory = {.ctx = ctx}};
+  for (size_t i = 0; i < own->count + count; i++) {
+    const char *key = i < own->count ? own->at[i].key : keys[i - own->count];
+    const char *value = i < own->count ? own->at[i].value : values[i - own->count];
+    size_t at = 0;
+    while (at < settings.count && strcmp(settings.at[at].key, key) != 0) {
+      at++;
+    }
+    if (at < settings.count) { // goes to the end: a section may have been set since
+      settings.count--;
+      memmove(&settings.at[at], &settings.at[at + 1], (settings.count - at) * sizeof *settings.at);
+    }
+    api_texts_add(&settings, key, strlen(key), value, strlen(value));
   }
-  *out = settings;
-  *out_count = n;
-  return settings != NULL ? DEA_OK : DEA_E_MEMORY;
+  return settings;
 }
 
 dea_status dea_design_copy(dea_context *ctx, const dea_design *design, dea_design **out)
 {
-  struct api_setting *settings;
-  size_t count;
   *out = NULL;
   api_begin(ctx);
-  DEA_TRY(ctx->inner, join_settings(ctx->inner, design, NULL, NULL, 0, &settings, &count));
-  return DEA_CHAIN(ctx->inner,
-                   build(ctx, design->name, design->bytes, design->length, settings, count, out));
+  return DEA_CHAIN(ctx->inner, build(ctx, design->name, design->bytes, design->length,
+                                     join_settings(ctx->inner, design, NULL, NULL, 0), out));
 }
 
 dea_status dea_design_set_all(dea_context *ctx, dea_design *design, const char *const *keys,
                               const char *const *values, size_t count)
 {
   struct dea_context *inner_ctx = api_begin(ctx);
-  struct api_setting *settings;
-  size_t setting_count;
   struct dea_design *inner;
   DEA_TRY(inner_ctx, api_check_owner(ctx, design->ctx, "design"));
-  DEA_TRY(inner_ctx,
-          join_settings(inner_ctx, design, keys, values, count, &settings, &setting_count));
-  dea_status status = read_with(inner_ctx, design, settings, setting_count, &inner);
+  struct api_texts settings = join_settings(inner_ctx, design, keys, values, count);
+  dea_status status = dea_arena_status(&settings.memory);
+  status = status == DEA_OK ? read_with(inner_ctx, design, &settings, &inner) : status;
   status = status == DEA_OK ? read_inner(inner_ctx, design, inner) : status;
   if (status != DEA_OK) {
-    free_settings(inner_ctx, settings, setting_count);
+    dea_arena_free(&settings.memory);
     return dea_fail_chain(inner_ctx, status, __func__, __FILE__, __LINE__);
   }
-  free_settings(inner_ctx, design->settings, design->setting_count);
+  dea_arena_free(&design->settings.memory);
   design->settings = settings;
-  design->setting_count = setting_count;
   return DEA_OK;
 }
 
@@ -299,7 +225,7 @@ dea_status dea_design_text(dea_context *ctx, dea_design *design, const char **ou
 {
   *out = NULL;
   DEA_TRY(ctx->inner, api_check_owner(ctx, design->ctx, "design"));
-  if (design->setting_count == 0) {
+  if (design->settings.count == 0) {
     *out = design->bytes;
     return DEA_OK;
   }

@@ -3,8 +3,6 @@
 #include "base/version.h"
 #include "cli/bench.h"
 #include "cli/cli.h"
-#include "cli/data_files.h"
-#include "explore/optimise.h"
 #include "fabricate/cairo_canvas.h"
 #include "geometry/boolean.h"
 #include "material/catalogue.h"
@@ -142,66 +140,42 @@ static void check_terminal(struct report *report, const char *terminal)
             "(fonts-dejavu-core)");
 }
 
-/* A module: of this build where its packages were there when that was configured. */
-static void print_module(struct report *report, const char *what, const char *path,
-                         const char *file, const char *packages, const char *without)
+/* Modules, with what they need and what there is not without them. */
+static const struct module {
+  const char *what;
+  bool (*find)(char *path, size_t size);
+  const char *file, *packages, *without;
+} modules[] = {
+    {"3D engine", dea_solid_module_find, "dea_solid_module",
+     "libpetsc-real-dev and libslepc-real-dev", "there is no model 3d"},
+    {"drawings of dea fab", dea_canvas_find, "dea_cairo_module", "libcairo2-dev",
+     "dea fab writes DXF and SVG only"},
+    {"booleans of regions", dea_boolean_find, "dea_geos_module", "libgeos-dev",
+     "regions are not united or cut"},
+    {".mat files", cli_bench_find_matio, "dea_matio_module", "libmatio-dev",
+     "files are exchanged as CSV"},
+};
+
+/* A module is of this build where its packages were there when that was configured. */
+static void check_module(struct report *report, const struct module *module)
 {
-  char advice[400];
-  const bool of_build = strstr(DEA_MODULES_OF_BUILD, file) != NULL;
+  char advice[400], path[4096];
+  const bool of_build = strstr(DEA_MODULES_OF_BUILD, module->file) != NULL;
+  const bool ok = module->find(path, sizeof path);
   if (of_build) {
     snprintf(advice, sizeof advice,
              "%s.so belongs to this build, but is in none of its folders: build all of it, or "
              "install it again; without it %s",
-             file, without);
+             module->file, module->without);
   } else {
-    snprintf(advice, sizeof advice, "install %s, and build again; without it %s", packages,
-             without);
+    snprintf(advice, sizeof advice, "install %s, and build again; without it %s", module->packages,
+             module->without);
   }
-  print_row(report, WISHED, path != NULL, what,
-            path != NULL ? path
-            : of_build   ? "not found"
-                         : "not built",
+  print_row(report, WISHED, ok, module->what,
+            ok         ? path
+            : of_build ? "not found"
+                       : "not built",
             advice);
-}
-
-static void check_engine(struct report *report)
-{
-  char path[4096];
-  bool ok = dea_solid_module_find(path, sizeof path);
-  print_module(report, "3D engine", ok ? path : NULL, "dea_solid_module",
-               "libpetsc-real-dev and libslepc-real-dev", "there is no model 3d");
-}
-
-static void check_cairo(struct report *report)
-{
-  char path[4096];
-  bool ok = dea_canvas_find(path, sizeof path);
-  print_module(report, "drawings of dea fab", ok ? path : NULL, "dea_cairo_module", "libcairo2-dev",
-               "dea fab writes DXF and SVG only");
-}
-
-static void check_geos(struct report *report)
-{
-  char path[4096];
-  bool ok = dea_boolean_find(path, sizeof path);
-  print_module(report, "booleans of regions", ok ? path : NULL, "dea_geos_module", "libgeos-dev",
-               "regions are not united or cut");
-}
-
-static void check_nlopt(struct report *report)
-{
-  const bool ok = dea_search_is_built();
-  print_row(
-      report, WISHED, ok, "searches of dea optimise", ok ? "NLopt" : "not built",
-      "install libnlopt-dev, and build again; without it there is dea sweep, but no dea optimise");
-}
-
-static void check_matio(struct report *report)
-{
-  char path[4096];
-  bool ok = cli_bench_find_matio(path, sizeof path);
-  print_module(report, ".mat files", ok ? path : NULL, "dea_matio_module", "libmatio-dev",
-               "files are exchanged as CSV");
 }
 
 static void check_gnuplot(struct report *report)
@@ -240,11 +214,9 @@ static int run(struct dea_cli *cli, void *request)
   dea_status status = check_materials(cli->ctx, &report);
   status = status == DEA_OK ? check_examples(cli->ctx, &report) : status;
   check_gnuplot(&report);
-  check_engine(&report);
-  check_cairo(&report);
-  check_geos(&report);
-  check_nlopt(&report);
-  check_matio(&report);
+  for (size_t i = 0; i < sizeof modules / sizeof modules[0]; i++) {
+    check_module(&report, &modules[i]);
+  }
   check_folder(&report);
   if (status == DEA_OK && !report.usable) {
     status = dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing");

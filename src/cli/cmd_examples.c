@@ -1,63 +1,138 @@
-#define _POSIX_C_SOURCE 200809L // mkdir
+#define _POSIX_C_SOURCE 200809L // stat
 #include "base/file.h"
-#include "base/text.h"
+#include "base/write_file.h"
+#include "base/yaml.h"
 #include "cli/cli.h"
-#include "cli/data_files.h"
 
-#include <errno.h>
+#include <glob.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <yaml.h>
+
+enum { EXAMPLE_SIZE_MAX = 1 << 26 };
 
 struct request {
   const char *name, *folder; // NULL: not given
   bool force;
 };
 
-/* Value of the top-level key "title" of a YAML file; "" when it has none. */
-static void read_title(const char *path, char *title, size_t size)
+static bool is_regular(const char *path)
 {
-  title[0] = '\0';
-  FILE *file = fopen(path, "rb");
-  yaml_parser_t parser;
-  if (file == NULL || yaml_parser_initialize(&parser) == 0) {
-    if (file != NULL) {
-      fclose(file);
-    }
-    return;
-  }
-  yaml_parser_set_input_file(&parser, file);
-  yaml_document_t document;
-  if (yaml_parser_load(&parser, &document) != 0) {
-    yaml_node_t *root = yaml_document_get_root_node(&document);
-    if (root != NULL && root->type == YAML_MAPPING_NODE) {
-      for (yaml_node_pair_t *pair = root->data.mapping.pairs.start;
-           pair < root->data.mapping.pairs.top; pair++) {
-        const yaml_node_t *key = yaml_document_get_node(&document, pair->key);
-        const yaml_node_t *value = yaml_document_get_node(&document, pair->value);
-        if (key->type == YAML_SCALAR_NODE && value->type == YAML_SCALAR_NODE &&
-            strcmp((const char *)key->data.scalar.value, "title") == 0) {
-          snprintf(title, size, "%s", (const char *)value->data.scalar.value);
-        }
-      }
-    }
-    yaml_document_delete(&document);
-  }
-  yaml_parser_delete(&parser);
-  fclose(file);
+  struct stat info;
+  return stat(path, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-static int list_examples(struct dea_cli *cli, const struct cli_data_list *list)
+static bool ends_in(const char *text, const char *outcome)
+{
+  size_t n = strlen(text), m = strlen(outcome);
+  return n >= m && strcmp(text + n - m, outcome) == 0;
+}
+
+/* Adds what is in `folder` to *found; the folder's own name is taken literally. */
+static dea_status glob_folder(struct dea_context *ctx, const char *folder, const char *pattern,
+                              int flags, glob_t *found)
+{
+  struct dea_text text = {.ctx = ctx};
+  for (const char *p = folder; *p != '\0'; p++) {
+    dea_text_add(&text, "%s%c", strchr("*?[\\", *p) != NULL ? "\\" : "", *p);
+  }
+  dea_text_add(&text, "%s", pattern);
+  int code = text.failed ? GLOB_NOSPACE : glob(dea_text_get(&text), flags, NULL, found);
+  dea_text_free(&text);
+  return code == GLOB_NOSPACE ? dea_fail(ctx, DEA_E_MEMORY, "out of memory") : DEA_OK;
+}
+
+static dea_status read_files(struct dea_context *ctx, const char *folder, const char *outcome,
+                             const glob_t *found, struct cli_data_list *list)
+{
+  list->folder = dea_copy_text(ctx, folder, strlen(folder));
+  list->files = dea_alloc(ctx, found->gl_pathc, sizeof *list->files);
+  DEA_TRY_MEMORY(list->folder != NULL && list->files != NULL);
+  for (size_t i = 0; i < found->gl_pathc; i++) {
+    const char *path = found->gl_pathv[i];
+    if (!ends_in(path, outcome) || !is_regular(path)) {
+      continue;
+    }
+    struct cli_data_file *file = &list->files[list->count];
+    const char *name = path + strlen(folder) + 1;
+    file->path = dea_copy_text(ctx, path, strlen(path));
+    file->name = dea_copy_text(ctx, name, strlen(name));
+    list->count++;
+    DEA_TRY_MEMORY(file->path != NULL && file->name != NULL);
+  }
+  return DEA_OK;
+}
+
+static dea_status find_in(struct dea_context *ctx, const char *folder, const char *outcome,
+                          struct cli_data_list *list)
+{
+  glob_t found = {.gl_pathc = 0};
+  dea_status status = glob_folder(ctx, folder, "/*", 0, &found);
+  static const char *const deeper[] = {"/*/*", "/*/*/*"}; // fit/silicone/uniaxial.csv
+  for (size_t i = 0; i < sizeof deeper / sizeof deeper[0] && status == DEA_OK; i++) {
+    status = glob_folder(ctx, folder, deeper[i], GLOB_APPEND, &found);
+  }
+  status = status == DEA_OK ? read_files(ctx, folder, outcome, &found, list) : status;
+  globfree(&found);
+  return status;
+}
+
+dea_status cli_examples_find(struct dea_context *ctx, const char *outcome,
+                             struct cli_data_list *list)
+{
+  static const char *const places[] = {DEA_INSTALL_DATA_DIR "/examples",
+                                       DEA_SOURCE_DIR "/examples"};
+  *list = (struct cli_data_list){.count = 0};
+  for (size_t i = 0; i < 2 && list->count == 0; i++) {
+    cli_data_free(ctx, list);
+    DEA_TRY(ctx, find_in(ctx, places[i], outcome, list));
+  }
+  return DEA_OK;
+}
+
+void cli_data_free(struct dea_context *ctx, struct cli_data_list *list)
 {
   for (size_t i = 0; i < list->count; i++) {
-    char title[256];
-    read_title(list->files[i].path, title, sizeof title);
-    printf("%-18.*s %s\n", (int)cli_data_stem(list->files[i].name), list->files[i].name, title);
+    dea_free(ctx, list->files[i].path);
+    dea_free(ctx, list->files[i].name);
+  }
+  dea_free(ctx, list->files);
+  dea_free(ctx, list->folder);
+  *list = (struct cli_data_list){.count = 0};
+}
+
+size_t cli_data_stem(const char *name)
+{
+  const char *dot = strrchr(name, '.');
+  return dot != NULL ? (size_t)(dot - name) : strlen(name);
+}
+
+/* Prints a name and the top-level key "title" of its file, "" when it has none. */
+static dea_status print_title(struct dea_context *ctx, const struct cli_data_file *file)
+{
+  char *bytes;
+  size_t length;
+  struct dea_yaml *document = NULL;
+  DEA_TRY(ctx, dea_file_read(ctx, file->path, DEA_YAML_SIZE_MAX, &bytes, &length));
+  dea_status status = dea_yaml_parse(ctx, file->path, bytes, length, &document);
+  if (status == DEA_OK) {
+    const struct dea_node *title = dea_node_find(dea_yaml_root(document), "title");
+    printf("%-18.*s %s\n", (int)cli_data_stem(file->name), file->name,
+           title != NULL ? title->text : "");
+  }
+  dea_yaml_destroy(ctx, document);
+  dea_free(ctx, bytes);
+  return status;
+}
+
+static dea_status list_examples(struct dea_cli *cli, const struct cli_data_list *list)
+{
+  for (size_t i = 0; i < list->count; i++) {
+    DEA_TRY(cli->ctx, print_title(cli->ctx, &list->files[i]));
   }
   if (!cli->quiet) {
     fprintf(stderr, "\nStart with one of them:  dea examples NAME > my.yaml && dea run my.yaml\n");
   }
-  return 0;
+  return DEA_OK;
 }
 
 /* File that a name means: "paper/fig02", "fig02" or either with ".yaml"; NULL when none. */
@@ -98,70 +173,27 @@ static dea_status unknown_example(struct dea_context *ctx, const struct cli_data
                                     "there is no example '%s'; 'dea examples' lists them", name);
 }
 
-/* Copies a file to an open stream; name: of the stream, for messages. */
-static dea_status copy_to(struct dea_context *ctx, const char *from, FILE *out, const char *name)
-{
-  FILE *in = fopen(from, "rb");
-  if (in == NULL) {
-    return dea_fail(ctx, DEA_E_IO, "cannot read %s: %s", from, strerror(errno));
-  }
-  char block[4096];
-  size_t n;
-  bool written = true;
-  while (written && (n = fread(block, 1, sizeof block, in)) > 0) {
-    written = fwrite(block, 1, n, out) == n;
-  }
-  bool read = ferror(in) == 0;
-  fclose(in);
-  if (!read) {
-    return dea_fail(ctx, DEA_E_IO, "cannot read %s", from);
-  }
-  if (!written || fflush(out) != 0) {
-    return dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", name, strerror(errno));
-  }
-  return DEA_OK;
-}
-
-/* Makes the folders in `path` that come before its last "/". */
-static dea_status create_parents(struct dea_context *ctx, char *path)
-{
-  for (char *p = strchr(path + 1, '/'); p != NULL; p = strchr(p + 1, '/')) {
-    *p = '\0';
-    int code = mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : errno;
-    if (code != 0) {
-      dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", path, strerror(code));
-    }
-    *p = '/';
-    if (code != 0) {
-      return DEA_E_IO;
-    }
-  }
-  return DEA_OK;
-}
-
+/* Copies an example into a folder; NULL: to stdout. */
 static dea_status copy_one(struct dea_context *ctx, const struct cli_data_file *file,
                            const char *folder, bool force)
 {
-  struct dea_text path = {.ctx = ctx};
-  dea_text_add(&path, "%s/%s", folder, file->name);
-  if (path.failed) {
-    dea_text_free(&path);
-    return DEA_E_MEMORY;
+  char *bytes;
+  size_t length;
+  DEA_TRY(ctx, dea_file_read(ctx, file->path, EXAMPLE_SIZE_MAX, &bytes, &length));
+  dea_status status = DEA_OK;
+  if (folder == NULL) {
+    fwrite(bytes, 1, length, stdout);
+  } else {
+    struct dea_text parent = {.ctx = ctx};
+    dea_text_add(&parent, "%s/%.*s", folder, (int)(dea_path_name(file->name) - file->name),
+                 file->name);
+    status = parent.failed ? DEA_E_MEMORY : dea_folder_create(ctx, dea_text_get(&parent));
+    dea_text_free(&parent);
+    status = status == DEA_OK ? dea_path_create_folders(ctx, folder, file->name, force) : status;
+    status =
+        status == DEA_OK ? dea_file_write_into(ctx, folder, file->name, bytes, length) : status;
   }
-  dea_status status = create_parents(ctx, path.data);
-  status = status == DEA_OK ? dea_path_check_target(ctx, path.data) : status;
-  FILE *out = status == DEA_OK ? fopen(path.data, force ? "wb" : "wbx") : NULL;
-  if (status == DEA_OK && out == NULL) {
-    status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s%s", path.data, strerror(errno),
-                      errno == EEXIST ? " (--force overwrites)" : "");
-  }
-  if (out != NULL) {
-    status = copy_to(ctx, file->path, out, path.data);
-    if (fclose(out) != 0 && status == DEA_OK) {
-      status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path.data, strerror(errno));
-    }
-  }
-  dea_text_free(&path);
+  dea_free(ctx, bytes);
   return status;
 }
 
@@ -179,26 +211,22 @@ static dea_status copy_all(struct dea_cli *cli, const char *folder, bool force)
   return status;
 }
 
-static int show(struct dea_cli *cli, const char *name)
+static dea_status show(struct dea_cli *cli, const char *name)
 {
   struct cli_data_list list;
-  int code;
   dea_status status = cli_examples_find(cli->ctx, ".yaml", &list);
   if (status == DEA_OK && list.count == 0) {
     status = dea_fail(cli->ctx, DEA_E_IO, "no examples were found in %s", list.folder);
   }
   if (status == DEA_OK && name != NULL) {
     const struct cli_data_file *file = find_example(&list, name);
-    status = file != NULL ? copy_to(cli->ctx, file->path, stdout, "standard output")
+    status = file != NULL ? copy_one(cli->ctx, file, NULL, false)
                           : unknown_example(cli->ctx, &list, name);
-  }
-  if (status == DEA_OK && name == NULL) {
-    code = list_examples(cli, &list);
-  } else {
-    code = cli_report(cli, status);
+  } else if (status == DEA_OK) {
+    status = list_examples(cli, &list);
   }
   cli_data_free(cli->ctx, &list);
-  return code;
+  return status;
 }
 
 static int run(struct dea_cli *cli, void *user)
@@ -210,8 +238,8 @@ static int run(struct dea_cli *cli, void *user)
   if (request->folder != NULL && request->name != NULL) {
     return cli_usage_error(cli, &cmd_examples, "'%s' is one argument too many", request->name);
   }
-  return request->folder != NULL ? cli_report(cli, copy_all(cli, request->folder, request->force))
-                                 : show(cli, request->name);
+  return cli_report(cli, request->folder != NULL ? copy_all(cli, request->folder, request->force)
+                                                 : show(cli, request->name));
 }
 
 static const struct cli_option options[] = {

@@ -10,6 +10,7 @@ struct request {
   const char *file;
   double processes; // 0: not given
   struct dea_optimise_options options;
+  struct dea_plot_format format;
 };
 
 static void print_optimum(const struct dea_case_key *case_key, const struct dea_optimum *best)
@@ -92,9 +93,10 @@ static void print_report(const struct dea_case_key *case_key,
   fflush(stdout);
 }
 
-static dea_status search(struct dea_cli *cli, const struct request *request,
-                         const struct dea_case_key *case_key)
+static dea_status optimise(struct dea_cli *cli, const struct request *request)
 {
+  struct dea_case_key *case_key;
+  DEA_TRY(cli->ctx, dea_case_key_read(cli->ctx, request->file, &case_key));
   struct dea_optimise_report *report = dea_alloc(cli->ctx, 1, sizeof *report);
   dea_status status =
       report != NULL ? dea_optimise_run(case_key, &request->options, report) : DEA_E_MEMORY;
@@ -103,14 +105,6 @@ static dea_status search(struct dea_cli *cli, const struct request *request,
     print_report(case_key, report, request->options.folder);
   }
   dea_free(cli->ctx, report);
-  return status;
-}
-
-static dea_status optimise(struct dea_cli *cli, const struct request *request)
-{
-  struct dea_case_key *case_key;
-  DEA_TRY(cli->ctx, dea_case_key_read(cli->ctx, request->file, &case_key));
-  dea_status status = search(cli, request, case_key);
   dea_case_key_destroy(case_key);
   return status;
 }
@@ -119,6 +113,7 @@ static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
+  request->options.format = request->format;
   request->options.processes = cli_processes(request->processes);
   request->options.folder =
       cli_output_name(request->options.folder, request->file, "optimise", &folder);
@@ -128,7 +123,7 @@ static int run(struct dea_cli *cli, void *user)
   return code;
 }
 
-static const struct request defaults = {.options = {.format = {.svg = true, .width_m = 85e-3}}};
+static const struct request defaults = {.format = {.svg = true, .width_m = 85e-3}};
 
 static const struct cli_option options[] = {
     CLI_ONE(CLI_DESIGN, "FILE", "file of a search", file, "a file is needed", "one file at a time"),
@@ -137,11 +132,8 @@ static const struct cli_option options[] = {
     {"jobs", 'j', CLI_TEXT, "N", "designs at once (default: one a core)", CLI_AT(processes),
      cli_parse_processes},
     {"force", 'f', CLI_FLAG, NULL, "throw away the designs that are there", CLI_AT(options.force)},
-    {"format", 0, CLI_FORMAT, "LIST",
-     "formats of the figures with commas between, svg if not given", CLI_AT(options.format),
-     cli_parse_formats},
-    {"width", 0, CLI_TEXT, "MM", "width of the figures (default 85)", CLI_AT(options.format),
-     cli_parse_width},
+    CLI_FORMAT_ROW("formats of the figures with commas between, svg if not given"),
+    CLI_WIDTH_ROW("width of the figures (default 85)"),
     {0}};
 
 const struct dea_command cmd_optimise = {

@@ -2,9 +2,9 @@
 #include "cli/cli.h"
 
 #include "explore/explore_file.h"
-#include "identify/breakdown_file.h"
+#include "identify/breakdown_fit.h"
 #include "identify/device_file.h"
-#include "identify/life_file.h"
+#include "identify/life_fit.h"
 #include "study/design_file.h"
 
 struct request {
@@ -26,11 +26,11 @@ static int run(struct dea_cli *cli, void *user)
   }
   const struct dea_record *record = request->material        ? &dea_material_file_record
                                     : bench != NULL          ? bench
-                                    : request->fit           ? &dea_fit_record
-                                    : request->fit_device    ? &dea_device_file_record
-                                    : request->fit_breakdown ? &dea_breakdown_file_record
-                                    : request->fit_life      ? &dea_life_file_record
-                                    : request->explore       ? &dea_explore_record
+                                    : request->fit           ? &dea_fit_form.record
+                                    : request->fit_device    ? &dea_device_form.record
+                                    : request->fit_breakdown ? &dea_breakdown_form.record
+                                    : request->fit_life      ? &dea_life_form.record
+                                    : request->explore       ? &dea_explore_form.record
                                     : request->general       ? &design.general.record
                                                              : &design.disc.record;
   struct dea_text out = {.ctx = cli->ctx};

@@ -1,7 +1,6 @@
 #define _GNU_SOURCE // environ, POSIX_SPAWN_SETSID
 #include "base/write_file.h"
 #include "cli/cli.h"
-#include "cli/data_files.h"
 #include "studio/studio.h"
 
 #include <errno.h>

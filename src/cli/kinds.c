@@ -2,7 +2,6 @@
 #include "base/schema.h"
 #include "cli/bench.h"
 #include "cli/cli.h"
-#include "cli/data_files.h"
 #include "figures/run_figures.h"
 #include "material/catalogue.h"
 #include "model/model.h"

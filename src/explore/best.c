@@ -5,7 +5,6 @@
 #include "base/write_file.h"
 #include "explore/explore_sweep.h"
 #include "explore/plan.h"
-#include "explore/slopes.h"
 #include "plot/plot.h"
 #include "result/columns.h"
 #include "result/figure.h"
@@ -490,38 +489,19 @@ static dea_status fail_without(const struct work *w)
 
 // All of it ---------------------------------------------------------------------------------------
 
-/* Whether a file of that name in the folder begins so; most are not there. */
-static bool begins_so(const struct work *w, const char *name, const char *wanted)
+/* Takes away a file of that name in the folder if it begins as an earlier search has written it;
+ * false: it does not. */
+static bool forget(const struct work *w, const char *name, const char *begin)
 {
-  struct dea_text path = {.ctx = w->ctx};
-  char head[sizeof written_by] = "";
-  dea_text_add(&path, "%s/%s", w->options->folder, name);
+  char *path = dea_path_join(w->ctx, w->options->folder, name), head[32] = "";
   size_t length;
-  if (!path.failed) {
-    dea_file_head(dea_text_get(&path), head, sizeof head - 1, &length);
+  const bool written = path != NULL && dea_file_head(path, head, strlen(begin), &length) &&
+                       strncmp(head, begin, strlen(begin)) == 0;
+  dea_free(w->ctx, path);
+  if (written) {
+    dea_path_forget(w->ctx, w->options->folder, name);
   }
-  dea_text_free(&path);
-  return strncmp(head, wanted, strlen(wanted)) == 0;
-}
-
-/* Takes away a design that an earlier search has written into the folder. */
-static dea_status remove_written(const struct work *w, size_t number)
-{
-  char name[BEST_SIZE];
-  name_best(number, name);
-  return begins_so(w, name, written_by)
-             ? dea_path_create_folders(w->ctx, w->options->folder, name, true)
-             : DEA_OK;
-}
-
-/* The same of a front's table and figure. */
-static dea_status remove_front(const struct work *w)
-{
-  if (!begins_so(w, front_table, "design,")) {
-    return DEA_OK;
-  }
-  DEA_TRY(w->ctx, dea_path_create_folders(w->ctx, w->options->folder, front_table, true));
-  return dea_gnuplot_create_folders(w->ctx, w->options->folder, front_figure, true);
+  return written;
 }
 
 /* Takes away designs of an earlier search in the folder that had more of them, or of the other
@@ -529,11 +509,18 @@ static dea_status remove_front(const struct work *w)
 static dea_status remove_older(const struct work *w, bool ended)
 {
   const bool front = w->case_key->file->objective_count > 1;
+  char name[BEST_SIZE];
   for (size_t i = front ? w->report->count + 1 : 1; i <= DEA_EXPLORE_FRONT_MAX + 1; i++) {
-    DEA_TRY(w->ctx, remove_written(w, i));
+    name_best(i, name);
+    forget(w, name, written_by);
   }
-  DEA_TRY(w->ctx, front || (ended && w->report->count == 0) ? remove_written(w, 0) : DEA_OK);
-  return front ? DEA_OK : remove_front(w);
+  if (front || (ended && w->report->count == 0)) {
+    name_best(0, name);
+    forget(w, name, written_by);
+  }
+  return front || !forget(w, front_table, "design,")
+             ? DEA_OK
+             : dea_gnuplot_create_folders(w->ctx, w->options->folder, front_figure, true);
 }
 
 /* What a reader has to know of the numbers of the best at the last voltage. */

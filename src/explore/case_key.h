@@ -5,9 +5,21 @@
 #include "base/arena.h"
 #include "explore/evaluator.h"
 #include "explore/explore_file.h"
-#include "explore/quantity.h"
 #include "job/device_fit_model.h"
 #include "study/critical.h"
+
+/* What is kept of a design: a column of load points, what a monitor of a device made of plies
+ * shows, or a voltage at which the film comes to an end. */
+struct dea_explored {
+  struct dea_column shown; // its key is the text below
+  char key[80];            // as the file has it: "centre_z_m", "plate_turn_y_rad"
+  int column;              // of the context; -1: a voltage of an event
+  bool is_frequency;       // that of the lowest mode, which solving leaves out
+  bool is_critical;        // a voltage of the event below
+  enum dea_event_kind event;
+  bool is_seen; // of a monitor or channel: that below
+  struct dea_monitor_column of;
+};
 
 /* A variable: values, or a range, or a distribution. */
 struct dea_variable {
@@ -78,3 +90,16 @@ void dea_case_key_flags_name(const struct dea_case_key *case_key, size_t k, char
  */
 double dea_limit_margin(const struct dea_case_key *case_key, const struct dea_limit *limit,
                         const double *q);
+/* Says that a name of the file is none of `what` [count], with the nearest of them. */
+dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *label,
+                               const char *what, const char *const names[], size_t count);
+/* Adds the parameters of the fit that the file names, if any (key `from_fit`), to its variables,
+ * with the fit's values, standard uncertainties and correlations. What is wrong becomes findings at
+ * from_fit. */
+dea_status dea_from_fit_read(struct dea_context *ctx, const struct dea_design *design,
+                             const struct dea_device *device, struct dea_explore_file *io);
+/* The question's evaluator with gradients: at the last voltage, of quantities that an objective or
+ * a limit is of, by variables that are searched; NAN for all others, and where the model has none
+ * at a design. The evaluator without gradients where the model has none of its own, or the file's
+ * method wants none. user: lent by the question. */
+struct dea_evaluator dea_case_key_with_slopes(const struct dea_case_key *case_key);

@@ -10,8 +10,7 @@
 
 static const char *const distributions[] = {"uniform", "normal", "lognormal", NULL};
 static const char *const begins[] = {"nearest", "rest", NULL};
-static const char *const plans[] = {"grid",    "sparse-grid", "latin-hypercube", "sobol", "random",
-                                    "indices", NULL};
+static const char *const plans[] = {"grid", "sparse-grid", "sobol", "random", "indices", NULL};
 
 static const struct dea_field variable_fields[] = {
     DEA_LABEL_ROW("name", VARIABLE_AT(text.name), "film.thickness", DEA_DEVICE_PARAM_DOC,
@@ -185,10 +184,6 @@ static const struct dea_field file_fields[] = {
                   .doc = "of dea optimise, where variables have a scatter: what counts of the "
                          "scattered designs"),
 };
-const struct dea_record dea_explore_record = {
-    "file", "designs that differ in some values, and what is asked of them", file_fields,
-    COUNT(file_fields)};
-
 dea_status dea_explore_correlations_check(struct dea_context *ctx,
                                           const struct dea_explore_file *file)
 {
@@ -220,4 +215,8 @@ static dea_status check(struct dea_context *ctx, const void *user)
   return dea_explore_correlations_check(ctx, file);
 }
 
-DEA_FIT_FILE(explore_file, dea_explore_record, check)
+const struct dea_fit_form dea_explore_form = {
+    {"file", "designs that differ in some values, and what is asked of them", file_fields,
+     COUNT(file_fields)},
+    sizeof(struct dea_explore_file),
+    check};

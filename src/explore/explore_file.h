@@ -21,7 +21,6 @@ enum dea_distribution { DEA_UNIFORM, DEA_NORMAL, DEA_LOGNORMAL };
 enum dea_plan_kind {
   DEA_PLAN_GRID,
   DEA_PLAN_SPARSE,
-  DEA_PLAN_LATIN,
   DEA_PLAN_SOBOL,
   DEA_PLAN_RANDOM,
   DEA_PLAN_INDICES,
@@ -84,13 +83,8 @@ struct dea_explore_file {
   struct dea_explore_robust robust;
 };
 
-extern const struct dea_record dea_explore_record;
+extern const struct dea_fit_form dea_explore_form;
 
-/* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
- * failure. */
-dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,
-                                 struct dea_explore_file **out);
 /* Findings where numbers cannot have the file's correlations. */
 dea_status dea_explore_correlations_check(struct dea_context *ctx,
                                           const struct dea_explore_file *file);
-void dea_explore_file_destroy(struct dea_context *ctx, struct dea_explore_file *file);

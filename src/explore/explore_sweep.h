@@ -36,12 +36,6 @@ struct dea_sweep_report {
 dea_status dea_sweep_run(const struct dea_case_key *case_key,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report);
 
-/* Figures band_KEY of spreads [voltages][quantities] of so many samples, into a folder. doubted:
- * [voltages], samples whose numbers are not to be trusted there. */
-struct dea_spread;
-dea_status dea_sweep_draw(const struct dea_case_key *case_key, const struct dea_spread *spreads,
-                          size_t samples, const size_t *doubted,
-                          const struct dea_plot_format *format, const char *folder);
 /* Of a sparse grid that is done: emulator.json into a folder, and the CSV of options.at. */
 dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct dea_plan *plan,
                              const struct dea_store *store, const struct dea_sweep_options *options,
@@ -51,3 +45,39 @@ dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct d
 dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,
                            const struct dea_store *store, const struct dea_plot_format *format,
                            const char *folder);
+
+/* In which order cases are evaluated: neighbours after each other, in groups that begin from the
+ * solution of one of them. */
+struct dea_order {
+  size_t *cases; // [count] numbers of cases in the order of evaluation
+  size_t *first; // [count] for each place in that order the first case of its group, from which the
+                 // others begin
+  size_t group;  // most cases of a group; 1: each is one by itself, in the order of the plan
+};
+
+/* Order of points p [count][params] in groups of at most `group`; whole[j]: numbers of parameter j
+ * are whole ones, which neighbours have in common. Arrays: owned by the caller. */
+dea_status dea_order_of(struct dea_context *ctx, const double *p, size_t count, size_t params,
+                        const bool *whole, size_t group, struct dea_order *out);
+void dea_order_free(struct dea_context *ctx, struct dea_order *order);
+
+// What samples say: moments, quantiles, Sobol indices
+
+enum { DEA_SHARES = 5 };
+/* Quantiles that are given: 2.5, 16, 50, 84 and 97.5 %. */
+extern const double dea_shares[DEA_SHARES];
+
+struct dea_spread {
+  size_t count; // of samples with a value
+  double mean, std, quantile[DEA_SHARES];
+};
+
+/* Of values [count]; NAN are left out. DEA_E_MEMORY. */
+dea_status dea_spread_find(struct dea_context *ctx, const double *values, size_t count,
+                           struct dea_spread *out);
+
+/* First and total index of a variable after Jansen (Comput. Phys. Commun. 117, 35, 1999), from
+ * values [samples] at A, at B, and at A with this variable of B. Samples with a NAN are left out.
+ */
+void dea_sobol_index(const double *a, const double *b, const double *ab, size_t samples,
+                     double *first, double *total);

@@ -1,4 +1,5 @@
-#include "explore/from_fit.h"
+/* Parameters that dea fit has found as variables of an exploration (key `from_fit`). */
+#include "explore/case_key.h"
 
 #include "base/file.h"
 #include "base/text.h"

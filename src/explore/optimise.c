@@ -6,6 +6,7 @@
 #include "explore/pool.h"
 
 #include <math.h>
+#include <nlopt.h>
 #include <string.h>
 
 // Objectives and limits ---------------------------------------------------------------------------
@@ -128,9 +129,6 @@ unsigned dea_search_marks(const struct dea_search *search, const double *p, size
   }
   return marks;
 }
-
-#ifdef DEA_HAVE_NLOPT
-#include <nlopt.h>
 
 static const double difference = 1e-4; // of central differences, as a share of the range
 
@@ -577,25 +575,3 @@ dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *o
   dea_free(search->ctx, w);
   return status;
 }
-
-bool dea_search_is_built(void)
-{
-  return true;
-}
-
-#else
-
-bool dea_search_is_built(void)
-{
-  return false;
-}
-
-dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *out, size_t *count)
-{
-  (void)out;
-  *count = 0;
-  return dea_fail(search->ctx, DEA_E_UNSUPPORTED,
-                  "dea optimise is not here: it is built when libnlopt-dev is installed");
-}
-
-#endif

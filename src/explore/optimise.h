@@ -46,8 +46,7 @@ enum { DEA_FRONT_MAX = 100 };
 
 /* Searches. out: of one objective one optimum; of two the front from the best of the first to the
  * best of the second, [*count] of at most DEA_FRONT_MAX. An interruption ends it with
- * DEA_E_INTERRUPTED, all evaluations kept. DEA_E_UNSUPPORTED where the program was built without
- * NLopt. */
+ * DEA_E_INTERRUPTED, all evaluations kept. */
 dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *out, size_t *count);
 /* Objectives [objective_count], then what limits are crossed by [limit_count] (at most 0: within),
  * of the design p by what the store has; NAN where a value is missing. false: it was not looked at.
@@ -56,5 +55,3 @@ enum { DEA_SEARCH_VALUES_MAX = DEA_EXPLORE_OBJECTIVES_MAX + 2 * DEA_EXPLORE_LIMI
 bool dea_search_compute(const struct dea_search *search, const double *p, double *out);
 /* Mark k of the design p by what the store has, or of all that it stands for together. */
 unsigned dea_search_marks(const struct dea_search *search, const double *p, size_t k);
-/* Whether it was built with NLopt. */
-bool dea_search_is_built(void);

@@ -98,27 +98,6 @@ void dea_sample_random(size_t dimensions, size_t count, unsigned long long seed,
   }
 }
 
-dea_status dea_sample_latin(struct dea_context *ctx, size_t dimensions, size_t count,
-                            unsigned long long seed, double *out)
-{
-  uint64_t state = seed;
-  size_t *order = dea_alloc(ctx, count, sizeof *order);
-  DEA_TRY_MEMORY(order != NULL);
-  for (size_t d = 0; d < dimensions; d++) {
-    for (size_t i = 0; i < count; i++) { // a random order, built up
-      const size_t k = (size_t)(mix(&state) % (i + 1));
-      order[i] = order[k];
-      order[k] = i;
-    }
-    for (size_t i = 0; i < count; i++) {
-      const double within = unit_of((uint32_t)(mix(&state) >> 32));
-      out[i * dimensions + d] = ((double)order[i] + within) / (double)count;
-    }
-  }
-  dea_free(ctx, order);
-  return DEA_OK;
-}
-
 double dea_normal_quantile(double u)
 {
   const bool upper = u > 0.5; // the lower half has the digits
@@ -288,22 +267,6 @@ static dea_status build_sparse(const struct dea_case_key *case_key, struct dea_p
   return DEA_OK;
 }
 
-static dea_status draw(const struct dea_case_key *case_key, size_t dimensions, size_t count,
-                       double *u)
-{
-  const unsigned long long seed = (unsigned long long)case_key->file->seed.si;
-  switch (case_key->file->plan.value) {
-  case DEA_PLAN_LATIN:
-    return dea_sample_latin(case_key->ctx, dimensions, count, seed, u);
-  case DEA_PLAN_RANDOM:
-    dea_sample_random(dimensions, count, seed, u);
-    return DEA_OK;
-  default:
-    dea_sample_sobol(dimensions, count, seed, u);
-    return DEA_OK;
-  }
-}
-
 static dea_status build_samples(const struct dea_case_key *case_key, struct dea_plan *out)
 {
   const size_t n = case_key->variable_count, samples = (size_t)case_key->file->samples.si;
@@ -322,12 +285,16 @@ static dea_status build_samples(const struct dea_case_key *case_key, struct dea_
   out->count = samples * blocks;
   out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
   double *u = dea_alloc(case_key->ctx, samples * dimensions, sizeof *u);
-  dea_status status =
-      out->p != NULL && u != NULL ? draw(case_key, dimensions, samples, u) : DEA_E_MEMORY;
-  if (status == DEA_OK && !indices) {
+  if (out->p == NULL || u == NULL) {
+    dea_free(case_key->ctx, u);
+    return DEA_E_MEMORY;
+  }
+  (case_key->file->plan.value == DEA_PLAN_RANDOM ? dea_sample_random : dea_sample_sobol)(
+      dimensions, samples, (unsigned long long)case_key->file->seed.si, u);
+  if (!indices) {
     dea_sample_correlate(case_key->file, samples, u);
   }
-  for (size_t b = 0; b < blocks && status == DEA_OK; b++) {
+  for (size_t b = 0; b < blocks; b++) {
     for (size_t i = 0; i < samples; i++) {
       for (size_t j = 0; j < n; j++) { // block 0: A, 1: B, 2 + j: A with column j of B
         const bool second = b == 1 || b == j + 2;
@@ -337,7 +304,7 @@ static dea_status build_samples(const struct dea_case_key *case_key, struct dea_
     }
   }
   dea_free(case_key->ctx, u);
-  return status;
+  return DEA_OK;
 }
 
 dea_status dea_plan_build(const struct dea_case_key *case_key, struct dea_plan *out)

@@ -9,10 +9,7 @@ enum { DEA_SOBOL_DIMENSIONS = 21 };
  * of Sobol's sequence with the direction numbers of Joe and Kuo, shifted by the seed. dimensions:
  * at most DEA_SOBOL_DIMENSIONS. */
 void dea_sample_sobol(size_t dimensions, size_t count, unsigned long long seed, double *out);
-/* The same of a Latin hypercube (each coordinate once in every of `count` equal intervals), and
- * without any order. DEA_E_MEMORY. */
-dea_status dea_sample_latin(struct dea_context *ctx, size_t dimensions, size_t count,
-                            unsigned long long seed, double *out);
+/* The same without any order. */
 void dea_sample_random(size_t dimensions, size_t count, unsigned long long seed, double *out);
 
 /* x with P(X <= x) = u of a standard normal distribution; 0 < u < 1. */

@@ -1,4 +1,5 @@
-#include "explore/slopes.h"
+/* Gradients of quantities by the model's own (docs/theory/gradients.md). */
+#include "explore/case_key.h"
 
 #include "result/columns.h"
 #include "study/force.h"

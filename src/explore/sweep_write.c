@@ -1,13 +1,15 @@
-/* The tables of a sweep: one row a case, and what samples say. */
+/* The tables and figures of a sweep: one row a case, and what samples say. */
 #include "base/csv_line.h"
 #include "base/h5.h"
+#include "base/sort.h"
 #include "base/write_file.h"
 #include "explore/explore_sweep.h"
-#include "explore/sample_statistics.h"
 #include "result/columns.h"
+#include "result/figure.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct work {
@@ -76,29 +78,24 @@ static dea_status write_cases(const struct work *w)
   return status;
 }
 
-/* One column: a variable, or with value >= 0 a value. */
-static void write_column(struct h5 *h, const struct work *w, hid_t group, size_t rows,
-                         double *column, size_t param, int value)
+/* A column of numbers: a variable, or with `values` a value. to: room for all rows. */
+static void write_numbers(struct h5 *h, const struct work *w, hid_t group, double *to, bool values,
+                          size_t i)
 {
+  const struct dea_device_param *param = &w->case_key->params[values ? 0 : i];
+  const struct dea_column *of = &w->case_key->quantities[i % w->case_key->quantity_count].shown;
   char name[64];
-  size_t row = 0;
+  size_t rows = 0;
   for (size_t c = 0; c < w->plan->count; c++) {
     const struct dea_case *done = case_of(w, c);
     if (done != NULL) {
-      column[row++] = value >= 0 ? done->q[value] : done->p[param];
+      to[rows++] = values ? done->q[i] : done->p[i];
     }
   }
-  if (value >= 0) {
-    const struct dea_column *of =
-        &w->case_key->quantities[(size_t)value % w->case_key->quantity_count].shown;
-    dea_case_key_value_name(w->case_key, (size_t)value, name, sizeof name);
-    dea_h5_write_array(h, group, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column, of->si_unit,
-                       of->meaning);
-  } else {
-    const struct dea_device_param *of = &w->case_key->params[param];
-    dea_h5_write_array(h, group, of->param.name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column,
-                       of->param.unit, "value in the design");
-  }
+  dea_case_key_value_name(w->case_key, i, name, sizeof name);
+  dea_h5_write_array(h, group, values ? name : param->param.name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
+                     rows, to, values ? of->si_unit : param->param.unit,
+                     values ? of->meaning : "value in the design");
 }
 
 enum { ID, REASON, FLAGS }; // FLAGS + k: at voltage k
@@ -106,16 +103,14 @@ enum { ID, REASON, FLAGS }; // FLAGS + k: at voltage k
 /* A column of words. */
 static void write_texts(struct h5 *h, const struct work *w, hid_t group, size_t rows, size_t what)
 {
-  static const size_t sizes[] = {DEA_CASE_ID_SIZE, DEA_CASE_WHY_SIZE, DEA_FLAGS_SIZE};
-  static const char *const meanings[] = {"hash of the resolved design", "why a value is missing",
-                                         "what a reader has to know of the numbers"};
-  const size_t kind = what < FLAGS ? what : FLAGS, size = sizes[kind];
-  char name[64];
-  snprintf(name, sizeof name, "%s", what == ID ? "id" : "reason");
-  if (kind == FLAGS) {
-    dea_case_key_flags_name(w->case_key, what - FLAGS, name, sizeof name);
-  }
-  char *texts = dea_alloc(w->ctx, rows, size);
+  static const struct {
+    size_t size;
+    const char *name, *meaning;
+  } kinds[] = {{DEA_CASE_ID_SIZE, "id", "hash of the resolved design"},
+               {DEA_CASE_WHY_SIZE, "reason", "why a value is missing"},
+               {DEA_FLAGS_SIZE, NULL, "what a reader has to know of the numbers"}};
+  const size_t kind = what < FLAGS ? what : FLAGS, size = kinds[kind].size;
+  char name[64], words[DEA_FLAGS_SIZE], *texts = dea_alloc(w->ctx, rows, size);
   size_t row = 0;
   if (texts == NULL) {
     h->status = DEA_E_MEMORY;
@@ -124,16 +119,19 @@ static void write_texts(struct h5 *h, const struct work *w, hid_t group, size_t 
   for (size_t c = 0; c < w->plan->count; c++) {
     const struct dea_case *done = case_of(w, c);
     if (done != NULL) {
-      char *to = texts + size * row++, words[DEA_FLAGS_SIZE];
-      snprintf(to, size, "%s",
+      snprintf(texts + size * row++, size, "%s",
                kind == FLAGS ? dea_flags_text(done->marks[what - FLAGS], words)
                : what == ID  ? done->id
                              : done->why);
     }
   }
+  if (kind == FLAGS) {
+    dea_case_key_flags_name(w->case_key, what - FLAGS, name, sizeof name);
+  }
   hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, size);
-  dea_h5_write_array(h, group, name, type, type, rows, texts, "1", meanings[kind]);
+  dea_h5_write_array(h, group, kind == FLAGS ? name : kinds[kind].name, type, type, rows, texts,
+                     "1", kinds[kind].meaning);
   dea_h5_close(type);
   dea_free(w->ctx, texts);
 }
@@ -160,10 +158,10 @@ static dea_status write_h5(const struct work *w)
   if (rows > 0) {
     write_texts(&h, w, group, rows, ID);
     for (size_t j = 0; j < w->params; j++) {
-      write_column(&h, w, group, rows, column, j, -1);
+      write_numbers(&h, w, group, column, false, j);
     }
     for (size_t i = 0; i < w->values; i++) {
-      write_column(&h, w, group, rows, column, 0, (int)i);
+      write_numbers(&h, w, group, column, true, i);
     }
     for (size_t k = 0; k < w->case_key->voltage_count; k++) {
       write_texts(&h, w, group, rows, FLAGS + k);
@@ -179,6 +177,59 @@ static dea_status write_h5(const struct work *w)
 }
 
 // What samples say --------------------------------------------------------------------------------
+
+const double dea_shares[DEA_SHARES] = {0.025, 0.16, 0.5, 0.84, 0.975};
+
+dea_status dea_spread_find(struct dea_context *ctx, const double *values, size_t count,
+                           struct dea_spread *out)
+{
+  double *sorted = dea_alloc(ctx, count, sizeof *sorted);
+  DEA_TRY_MEMORY(sorted != NULL);
+  *out = (struct dea_spread){0, 0, 0, {NAN, NAN, NAN, NAN, NAN}};
+  for (size_t i = 0; i < count; i++) {
+    if (!isnan(values[i])) {
+      sorted[out->count++] = values[i];
+      out->mean += values[i];
+    }
+  }
+  out->mean /= (double)out->count; // NAN without any
+  for (size_t i = 0; i < out->count; i++) {
+    out->std += (sorted[i] - out->mean) * (sorted[i] - out->mean);
+  }
+  out->std = out->count > 1 ? sqrt(out->std / (double)(out->count - 1)) : NAN;
+  qsort(sorted, out->count, sizeof *sorted, dea_rising);
+  for (size_t k = 0; k < DEA_SHARES && out->count > 0; k++) {
+    const double at = dea_shares[k] * (double)(out->count - 1);
+    const size_t i = (size_t)at;
+    const double next = sorted[i + 1 < out->count ? i + 1 : i];
+    out->quantile[k] = sorted[i] + (at - (double)i) * (next - sorted[i]);
+  }
+  dea_free(ctx, sorted);
+  return DEA_OK;
+}
+
+void dea_sobol_index(const double *a, const double *b, const double *ab, size_t samples,
+                     double *first, double *total)
+{
+  double n = 0, sum = 0, squares = 0, of_first = 0, of_total = 0;
+  for (size_t i = 0; i < samples; i++) {
+    if (!isnan(a[i]) && !isnan(b[i]) && !isnan(ab[i])) {
+      n += 1;
+      sum += a[i] + b[i];
+    }
+  }
+  const double mean = sum / (2 * n);
+  for (size_t i = 0; i < samples; i++) {
+    if (!isnan(a[i]) && !isnan(b[i]) && !isnan(ab[i])) {
+      squares += (a[i] - mean) * (a[i] - mean) + (b[i] - mean) * (b[i] - mean);
+      of_first += (b[i] - ab[i]) * (b[i] - ab[i]);
+      of_total += (a[i] - ab[i]) * (a[i] - ab[i]);
+    }
+  }
+  const double variance = squares / (2 * n);
+  *first = 1 - of_first / (2 * n * variance);
+  *total = of_total / (2 * n * variance);
+}
 
 /* Values i of the cases from first on, [count]; NAN where a case is not done. */
 static void get_values(const struct work *w, size_t i, size_t first, size_t count, double *out)
@@ -284,6 +335,129 @@ static dea_status write_indices(const struct work *w, double *values)
   return status;
 }
 
+// Figures: of samples at several voltages the band of each quantity's curve
+// -------------------------
+
+/* Spreads of a quantity at all voltages and how it is shown. */
+struct shown {
+  const struct dea_case_key *case_key;
+  const struct dea_spread *spreads; // of the quantity: [voltages * quantities] from it on
+  const struct dea_column *column;
+  size_t samples;
+  const size_t *doubted; // [voltages]
+};
+
+/* Puts quantiles `low` and its opposite at voltage v. */
+static void add_point(const struct shown *shown, size_t v, size_t low, struct dea_series *out)
+{
+  const size_t n = shown->case_key->voltage_count;
+  const double *quantile = shown->spreads[v * shown->case_key->quantity_count].quantile;
+  out->values[v] = 1e-3 * shown->case_key->voltages_V[v];
+  out->values[n + v] = shown->column->factor * quantile[low];
+  out->values[2 * n + v] = shown->column->factor * quantile[DEA_SHARES - 1 - low];
+}
+
+static dea_status add_bands(const struct shown *shown, struct dea_panel *panel)
+{
+  static const char *const titles[] = {"95 %", "68 %"};
+  static const enum dea_colour colours[] = {DEA_GREY, DEA_VERMILLION};
+  const size_t n = shown->case_key->voltage_count;
+  for (size_t k = 0; k < 2; k++) { // from the outer pair inwards
+    struct dea_series *band;
+    DEA_TRY(shown->case_key->ctx,
+            dea_panel_add(shown->case_key->ctx, panel, n, DEA_BAND, colours[k], titles[k], &band));
+    for (size_t v = 0; v < n; v++) {
+      add_point(shown, v, k, band);
+    }
+  }
+  return DEA_OK;
+}
+
+/* Whether a voltage has samples that are not to be trusted; none lies beyond the last one. */
+static bool is_doubted(const struct shown *shown, size_t v)
+{
+  return v < shown->case_key->voltage_count && shown->doubted[v] > 0;
+}
+
+/* The median where all samples are to be trusted, or dashed where some are not, up to the points
+ * beside these. */
+static dea_status add_line(const struct shown *shown, struct dea_panel *panel, bool dashed,
+                           const char *title)
+{
+  const size_t n = shown->case_key->voltage_count;
+  struct dea_series *line;
+  DEA_TRY(shown->case_key->ctx,
+          dea_panel_add(shown->case_key->ctx, panel, n, dashed ? DEA_DASHED : DEA_LINE_MARKED,
+                        DEA_BLUE, title, &line));
+  for (size_t v = 0; v < n; v++) {
+    const bool beside = (v > 0 && is_doubted(shown, v - 1)) || is_doubted(shown, v + 1);
+    if (dashed ? is_doubted(shown, v) || beside : !is_doubted(shown, v)) {
+      add_point(shown, v, DEA_SHARES / 2, line);
+    }
+  }
+  return DEA_OK;
+}
+
+/* Samples without a value are in neither median nor bands, and those that are not to be trusted
+ * are: the key says both. */
+static dea_status add_median(const struct shown *shown, struct dea_panel *panel)
+{
+  size_t most = 0, least = shown->samples, good = 0;
+  char median[64] = "median", doubts[62], both[DEA_LABEL_SIZE];
+  for (size_t v = 0; v < shown->case_key->voltage_count; v++) {
+    const size_t count = shown->spreads[v * shown->case_key->quantity_count].count;
+    most = shown->doubted[v] > most ? shown->doubted[v] : most;
+    least = count < least ? count : least;
+    good += is_doubted(shown, v) ? 0U : 1U;
+  }
+  if (least < shown->samples) {
+    snprintf(median, sizeof median, "median of %zu or more of %zu", least, shown->samples);
+  }
+  snprintf(doubts, sizeof doubts, "up to %zu of %zu not to be trusted", most, shown->samples);
+  if (good == 0) {
+    snprintf(both, sizeof both, "%s, %s", median, doubts);
+    return add_line(shown, panel, true, both);
+  }
+  DEA_TRY(shown->case_key->ctx, add_line(shown, panel, false, median));
+  return most > 0 ? add_line(shown, panel, true, doubts) : DEA_OK;
+}
+
+static dea_status fill_panel(const struct shown *shown, struct dea_panel *panel)
+{
+  DEA_TRY(shown->case_key->ctx, add_bands(shown, panel));
+  DEA_TRY(shown->case_key->ctx, add_median(shown, panel));
+  dea_figure_label(shown->column, panel->y_label, sizeof panel->y_label);
+  dea_panel_voltage_axis(panel);
+  dea_panel_place_key(panel);
+  return DEA_OK;
+}
+
+/* Figures band_KEY of spreads [voltages][quantities] of so many samples, into a folder. doubted:
+ * [voltages], samples whose numbers are not to be trusted there. */
+static dea_status draw(const struct dea_case_key *case_key, const struct dea_spread *spreads,
+                       size_t samples, const size_t *doubted, const struct dea_plot_format *format,
+                       const char *folder)
+{
+  struct dea_plot_folder list = {.ctx = case_key->ctx, .format = format, .path = folder};
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < case_key->quantity_count && status == DEA_OK; i++) {
+    struct dea_plot *plot;
+    char name[64];
+    const struct shown shown = {case_key, spreads + i, &case_key->quantities[i].shown, samples,
+                                doubted};
+    snprintf(name, sizeof name, "band_%.50s", case_key->quantities[i].key);
+    status = dea_plot_create(case_key->ctx, name,
+                             "median of the samples, and where 68 and 95 % of them lie", &plot);
+    if (status == DEA_OK) {
+      status = dea_plot_folder_add(&list, plot, fill_panel(&shown, &plot->panels[0]));
+    }
+  }
+  return dea_plot_folder_draw(&list, status);
+}
+
+// All of it
+// ----------------------------------------------------------------------------------------
+
 static dea_status write_all(const struct work *w)
 {
   DEA_TRY(w->ctx, write_cases(w));
@@ -305,7 +479,7 @@ static dea_status write_all(const struct work *w)
     status = write_indices(w, values);
   }
   if (status == DEA_OK && w->case_key->voltage_count > 1) {
-    status = dea_sweep_draw(w->case_key, spreads, independent(w), doubted, w->format, w->folder);
+    status = draw(w->case_key, spreads, independent(w), doubted, w->format, w->folder);
   }
   dea_free(w->ctx, spreads);
   dea_free(w->ctx, values);

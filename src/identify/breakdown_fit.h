@@ -2,8 +2,20 @@
 #pragma once
 
 #include "base/arena.h"
-#include "identify/breakdown_file.h"
+#include "identify/fit_head.h"
 #include "identify/weibull.h"
+
+/* A table of films that broke or survived. */
+struct dea_breakdown_file {
+  struct dea_fit_head head;
+  struct dea_label material;
+  struct dea_label tests;                            // their table
+  struct dea_quantity thickness_m, stretch, area_m2; // of all films; absent: columns
+  struct dea_quantity exponent, thickness_exponent;  // known before; absent: found
+  struct dea_quantity thickness0_m, area0_m2;        // references; absent: geometric means
+};
+
+extern const struct dea_fit_form dea_breakdown_form;
 
 struct dea_breakdown_fit {
   struct dea_arena memory;               // the first member

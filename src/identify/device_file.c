@@ -5,8 +5,7 @@
 #define CURVE_AT(member) offsetof(struct dea_device_curve_text, member)
 
 static const char *const kinds[] = {"sweep", "force", "transient", NULL}; // enum dea_device_kind
-static const char *const uses[] = {"fit", "check", NULL};  // the first of enum dea_fit_use
-static const char *const slacks[] = {"cut", "keep", NULL}; // enum dea_device_slack
+static const char *const uses[] = {"fit", "check", NULL}; // the first of enum dea_fit_use
 
 static const struct dea_field curve_fields[] = {
     DEA_LABEL_ROW("name", CURVE_AT(name), "strain", "name of the measurement", .required = true),
@@ -26,8 +25,6 @@ static const struct dea_field curve_fields[] = {
                    .default_text = "sweep"),
     DEA_CHOICE_ROW("use", CURVE_AT(use), uses, "check", "fit: fitted; check: only compared",
                    .default_text = "fit"),
-    DEA_CHOICE_ROW("slack", CURVE_AT(slack), slacks, "keep",
-                   "rows at which the model's film has lost its tension", .default_text = "cut"),
     DEA_NUMBER_ROW("uncertainty", CURVE_AT(relative), "1", "2 %",
                    "standard uncertainty of each value, as a share of it", .max = 10,
                    .absent_text = "the columns std, or from the scatter"),
@@ -75,10 +72,6 @@ static const struct dea_field file_fields[] = {
                   .example = "[{name: strain, file: strain.csv}]",
                   DEA_LIST(1, DEA_DEVICE_FILES_MAX, struct dea_device_curve_text, AT(curve_count))),
 };
-const struct dea_record dea_device_file_record = {
-    "fit file", "measurements of a device and what of its design is fitted", file_fields,
-    COUNT(file_fields)};
-
 static dea_status check(struct dea_context *ctx, const void *file)
 {
   const struct dea_device_file *fit = file;
@@ -88,4 +81,8 @@ static dea_status check(struct dea_context *ctx, const void *file)
                              "parameter");
 }
 
-DEA_FIT_FILE(device_file, dea_device_file_record, check)
+const struct dea_fit_form dea_device_form = {
+    {"fit file", "measurements of a device and what of its design is fitted", file_fields,
+     COUNT(file_fields)},
+    sizeof(struct dea_device_file),
+    check};

@@ -17,14 +17,13 @@ enum {
   "fibres.young_modulus, ...)"
 
 enum dea_device_kind { DEA_DEVICE_SWEEP, DEA_DEVICE_FORCE, DEA_DEVICE_TRANSIENT };
-enum dea_device_slack { DEA_DEVICE_SLACK_CUT, DEA_DEVICE_SLACK_KEEP };
 
 /* Curves of one file as written. */
 struct dea_device_curve_text {
   struct dea_label name, file, absolute;
   struct dea_label quantities[DEA_DEVICE_QUANTITIES_MAX];
   size_t quantity_count;
-  struct dea_choice kind, use, slack; // enum dea_device_kind, dea_fit_use, dea_device_slack
+  struct dea_choice kind, use; // enum dea_device_kind, dea_fit_use
   struct dea_quantity relative;
 };
 
@@ -37,10 +36,4 @@ struct dea_device_file {
   size_t curve_count;
 };
 
-extern const struct dea_record dea_device_file_record;
-
-/* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
- * failure. */
-dea_status dea_device_file_read(struct dea_context *ctx, const char *file,
-                                struct dea_device_file **out);
-void dea_device_file_destroy(struct dea_context *ctx, struct dea_device_file *fit);
+extern const struct dea_fit_form dea_device_form;

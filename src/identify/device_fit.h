@@ -79,8 +79,6 @@ struct dea_device_fit {
   struct dea_arena memory;
 };
 
-void dea_device_fit_destroy(struct dea_context *ctx, struct dea_device_fit *fit);
-
 /* A measurement that could be made: derivatives of what it would give [rows x params], over its
  * assumed uncertainty; lent. */
 struct dea_device_candidate {
@@ -90,5 +88,5 @@ struct dea_device_candidate {
 };
 
 /* Fills weak, pairs and next from what was fitted (least_squares and statistics). */
-dea_status dea_device_identify(struct dea_context *ctx, struct dea_device_fit *fit,
-                               const struct dea_device_candidate *candidates, size_t count);
+void dea_device_identify(struct dea_device_fit *fit, const struct dea_device_candidate *candidates,
+                         size_t count);

@@ -614,6 +614,23 @@ dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
   return DEA_OK;
 }
 
+dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file,
+                            const struct dea_fit_options *options, struct dea_fit **out)
+{
+  struct dea_arena tests = {.ctx = ctx};
+  struct dea_fit_series *series;
+  *out = NULL;
+  dea_status status = dea_fit_series_read(&tests, file, &series);
+  status =
+      status == DEA_OK ? dea_fit_run(ctx, file, series, file->test_count, options, out) : status;
+  if (status != DEA_OK) {
+    dea_arena_free(&tests);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  (*out)->tests = tests;
+  return DEA_OK;
+}
+
 void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit)
 {
   if (fit != NULL) {

@@ -121,8 +121,6 @@ dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem
  * words. Returns their number. */
 size_t dea_fit_identify_weak(const struct dea_fit_param *params, const struct dea_lsq_statistics *s,
                              const char *what, char out[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE]);
-/* Adds a measurement to a list [DEA_FIT_NEXT_MAX], the best first. */
-void dea_fit_next_add(struct dea_fit_next *list, size_t *count, const char *what, double shrink);
 /* Where the law ends to be stable, and the next test. */
 void dea_fit_identify_stability(struct dea_fit *fit);
 /* Stretch of a mode from which a material is not stable, looked for up to `to`; NAN: it is. */

@@ -63,11 +63,29 @@ struct dea_fit_file {
   size_t test_count;
 };
 
-extern const struct dea_record dea_fit_record;
+extern const struct dea_fit_form dea_fit_form;
 
-/* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
- * failure. */
-dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out);
 /* Temperature of a test; NAN: unknown. */
 double dea_fit_temperature_K(const struct dea_fit_file *file, const struct dea_fit_test *test);
-void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit);
+
+/* Measurements as a fit takes them: stretch, nominal stress, uncertainty, in time where they are.
+ */
+struct dea_fit_series {
+  const struct dea_fit_test *test; // lent
+  const char *file;
+  char sha256[65];
+  size_t rows;
+  size_t *line;             // [rows]
+  double *stretch;          // [rows]
+  double *time_s;           // [rows], NULL: slow
+  double *stress_Pa;        // [rows], NAN of a prediction
+  double *std_Pa;           // [rows] standard uncertainty, NAN where none is given
+  struct dea_coupon coupon; // the way through the rows
+  size_t slack, repeated;   // rows that were left out
+};
+
+/* Series of all tests that the file names, [test_count], in CSV files from its folder; memory of
+ * the arena. What is wrong becomes a finding with file and line, DEA_E_IO then; what is only odd
+ * (slack rows, repeated rows, a stretch that is never reached) a warning. */
+dea_status dea_fit_series_read(struct dea_arena *arena, const struct dea_fit_file *file,
+                               struct dea_fit_series **out);

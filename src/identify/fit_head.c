@@ -35,10 +35,9 @@ dea_status dea_fit_names_check(struct dea_context *ctx, const void *items, size_
 }
 
 static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t length,
-                             const struct dea_record *record,
-                             dea_status (*check)(struct dea_context *ctx, const void *fit),
-                             struct dea_fit_head *head)
+                             const struct dea_fit_form *form, struct dea_fit_head *head)
 {
+  const struct dea_record *record = &form->record;
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   dea_sha256_hex(bytes, length, head->sha256);
   DEA_TRY(ctx, dea_yaml_parse(ctx, head->file, bytes, length, &head->document));
@@ -46,7 +45,7 @@ static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t 
   DEA_TRY(ctx, dea_file_kind_check(ctx, head->document, record->fields[0].key));
   DEA_TRY(ctx, dea_schema_read(&reader, record, dea_yaml_root(head->document), "", head));
   if (dea_finding_count(ctx, DEA_ERROR) == errors) {
-    DEA_TRY(ctx, check != NULL ? check(ctx, head) : DEA_OK);
+    DEA_TRY(ctx, form->check != NULL ? form->check(ctx, head) : DEA_OK);
     DEA_TRY(ctx, check_name(ctx, &head->name));
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
@@ -73,20 +72,17 @@ dea_status dea_fit_file_has(struct dea_context *ctx, const char *file, const cha
 }
 
 dea_status dea_fit_head_read(struct dea_context *ctx, const char *file,
-                             const struct dea_record *record, size_t size,
-                             dea_status (*check)(struct dea_context *ctx, const void *fit),
-                             void **out)
+                             const struct dea_fit_form *form, void **out)
 {
   char *bytes;
   size_t length;
   *out = NULL;
   DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
-  struct dea_fit_head *head = dea_alloc(ctx, 1, size);
+  struct dea_fit_head *head = dea_alloc(ctx, 1, form->size);
   dea_status status = head != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
     head->file = dea_intern(ctx, file);
-    status =
-        head->file != NULL ? read_bytes(ctx, bytes, length, record, check, head) : DEA_E_MEMORY;
+    status = head->file != NULL ? read_bytes(ctx, bytes, length, form, head) : DEA_E_MEMORY;
   }
   dea_free(ctx, bytes);
   if (status != DEA_OK) {

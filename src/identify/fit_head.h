@@ -46,13 +46,18 @@ struct dea_fit_parameter_text {
  */
 dea_status dea_fit_file_has(struct dea_context *ctx, const char *file, const char *key, bool *out);
 
-/* Reads a file into a new struct of `size` bytes that begins with its head; check: what the table
- * cannot say, asked where the table is kept, NULL: nothing. Errors are findings with their places;
- * DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
+/* A kind of file: its keys, and its struct of `size` bytes, which begins with a head; check: what
+ * the table cannot say, asked where the table is kept, NULL: nothing. */
+struct dea_fit_form {
+  struct dea_record record;
+  size_t size;
+  dea_status (*check)(struct dea_context *ctx, const void *fit);
+};
+
+/* Reads a file into a new struct of that kind. Errors are findings with their places; DEA_E_DESIGN
+ * then. out: owned by the caller (dea_fit_head_destroy), NULL on failure. */
 dea_status dea_fit_head_read(struct dea_context *ctx, const char *file,
-                             const struct dea_record *record, size_t size,
-                             dea_status (*check)(struct dea_context *ctx, const void *fit),
-                             void **out);
+                             const struct dea_fit_form *form, void **out);
 /* fit: begins with its head, or NULL. */
 void dea_fit_head_destroy(struct dea_context *ctx, void *fit);
 
@@ -60,20 +65,6 @@ void dea_fit_head_destroy(struct dea_context *ctx, void *fit);
  * name; what: "test". */
 dea_status dea_fit_names_check(struct dea_context *ctx, const void *items, size_t count,
                                size_t size, const char *what);
-
-/* The functions dea_NAME_read and dea_NAME_destroy of a struct dea_NAME that begins with a head. */
-#define DEA_FIT_FILE(name, record, check)                                                          \
-  dea_status dea_##name##_read(struct dea_context *ctx, const char *file, struct dea_##name **out) \
-  {                                                                                                \
-    void *fit;                                                                                     \
-    dea_status status = dea_fit_head_read(ctx, file, &record, sizeof **out, check, &fit);          \
-    *out = fit;                                                                                    \
-    return status;                                                                                 \
-  }                                                                                                \
-  void dea_##name##_destroy(struct dea_context *ctx, struct dea_##name *fit)                       \
-  {                                                                                                \
-    dea_fit_head_destroy(ctx, fit);                                                                \
-  }
 
 /* A fit of films or specimens, of `size` bytes: its struct begins with the arena of all that it
  * finds, and is zero otherwise when `run` fills it. file: handed on. NULL: it failed, *status. */

@@ -2,7 +2,7 @@
  */
 #pragma once
 
-#include "identify/fit_data.h"
+#include "identify/fit_file.h"
 #include "identify/least_squares.h"
 
 enum { DEA_FIT_PARAM_NAME = 128 };

@@ -1,8 +1,8 @@
 /* What a fit says beyond its numbers: combinations of parameters that the tests do not tell apart,
- * where the law ends to be stable, and which test would tell most. */
-#include "identify/fit.h"
-#include "identify/information.h"
+ * where the law ends to be stable, and which test or measurement would tell most. */
+#include "identify/device_fit.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -58,21 +58,6 @@ size_t dea_fit_identify_weak(const struct dea_fit_param *params, const struct de
   return count;
 }
 
-void dea_fit_next_add(struct dea_fit_next *list, size_t *count, const char *what, double shrink)
-{
-  size_t at = *count;
-  while (at > 0 && list[at - 1].shrink > shrink) {
-    at--;
-  }
-  if (at < DEA_FIT_NEXT_MAX) {
-    const size_t kept = *count < DEA_FIT_NEXT_MAX ? *count : DEA_FIT_NEXT_MAX - 1;
-    memmove(&list[at + 1], &list[at], (kept - at) * sizeof *list);
-    list[at].shrink = shrink;
-    snprintf(list[at].what, sizeof list[at].what, "%.79s", what);
-    *count = kept + 1;
-  }
-}
-
 /* ---- stability ---- */
 
 double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupon_mode mode,
@@ -113,10 +98,6 @@ void dea_fit_identify_stability(struct dea_fit *fit)
   }
 }
 
-/* ---- the next test ---- */
-
-enum { NEXT_ROWS = 10 };
-
 double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1)
 {
   double low = 1, high = fmax(sqrt(I1), 2);
@@ -129,6 +110,90 @@ double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1)
     }
   }
   return low;
+}
+
+/* ---- the next test ---- */
+
+enum { NEXT_ROWS = 10 };
+
+static const double open_share = 1e-9; // added to J'J: what nothing is known of stays finite
+
+/* What measurements hold of the parameters of a fit: J'J over those that are free, each in units
+ * that give its own column the length 1. For D-optimality: which measurement would add most. */
+struct information {
+  size_t active[DEA_LSQ_PARAMS_MAX], count; // neither held nor at a bound
+  double length[DEA_LSQ_PARAMS_MAX];
+  double A[DEA_LSQ_PARAMS_MAX * DEA_LSQ_PARAMS_MAX]; // [count x count]
+};
+
+/* Adds rows; J: [rows x params] by columns, over the rows' uncertainties; all times `weight`. */
+static void add_rows(struct information *to, const double *J, size_t rows, double weight)
+{
+  const size_t k = to->count;
+  for (size_t a = 0; a < k; a++) {
+    for (size_t b = 0; b < k; b++) {
+      double sum = 0;
+      for (size_t i = 0; i < rows; i++) {
+        sum += J[to->active[a] * rows + i] * J[to->active[b] * rows + i];
+      }
+      to->A[a * k + b] += weight * sum / (to->length[a] * to->length[b]);
+    }
+  }
+}
+
+/* That of a fit whose residuals have the variance that its statistics say. scale: [params], taken
+ * where the rows do not notice a parameter. What nothing is known of stays a finite number. */
+static void begin_information(const struct dea_lsq_fit *fit, double variance, const double *scale,
+                              struct information *out)
+{
+  *out = (struct information){.count = 0};
+  for (size_t j = 0; j < fit->params; j++) {
+    if (!fit->held[j] && !fit->at_bound[j]) {
+      double sum = 0;
+      for (size_t i = 0; i < fit->rows; i++) {
+        sum += fit->J[j * fit->rows + i] * fit->J[j * fit->rows + i];
+      }
+      out->length[out->count] = sum > 0 ? sqrt(sum) : 1 / scale[j];
+      out->active[out->count++] = j;
+    }
+  }
+  add_rows(out, fit->J, fit->rows, 1 / variance);
+  for (size_t a = 0; a < out->count; a++) {
+    out->A[a * out->count + a] += open_share / variance;
+  }
+}
+
+/* ln det A, and the diagonal of its inverse [count]. */
+static double factor(const struct information *of, double *variance)
+{
+  const size_t k = of->count;
+  double A[DEA_LSQ_PARAMS_MAX * DEA_LSQ_PARAMS_MAX], sum = 0;
+  memcpy(A, of->A, k * k * sizeof *A);
+  LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', (lapack_int)k, A, (lapack_int)k);
+  for (size_t j = 0; j < k; j++) {
+    sum += 2 * log(A[j * k + j]);
+  }
+  LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', (lapack_int)k, A, (lapack_int)k);
+  for (size_t j = 0; j < k; j++) {
+    variance[j] = A[j * k + j];
+  }
+  return sum;
+}
+
+/* Adds a measurement to a list [DEA_FIT_NEXT_MAX], the best first. */
+static void add_next(struct dea_fit_next *list, size_t *count, const char *what, double shrink)
+{
+  size_t at = *count;
+  while (at > 0 && list[at - 1].shrink > shrink) {
+    at--;
+  }
+  if (at < DEA_FIT_NEXT_MAX) {
+    const size_t kept = *count < DEA_FIT_NEXT_MAX ? *count : DEA_FIT_NEXT_MAX - 1;
+    memmove(&list[at + 1], &list[at], (kept - at) * sizeof *list);
+    list[at].shrink = shrink;
+    snprintf(list[at].what, sizeof list[at].what, "%.79s", what);
+    *count = kept + 1;
+  }
 }
 
 /* A test that could be made, with ten rows up to the I1 that the data reach. */
@@ -185,13 +250,13 @@ static double longest_time(const struct dea_fit *fit)
 }
 
 static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct dea_fit *fit,
-                        int which, const struct dea_information *base)
+                        int which, const struct information *base)
 {
   const size_t n = fit->model.count;
   struct dea_fit_series series;
   struct dea_lsq_problem problem;
   char what[80];
-  struct dea_information now = *base;
+  struct information now = *base;
   double stress[NEXT_ROWS], variance[DEA_LSQ_PARAMS_MAX];
   DEA_TRY(ctx, propose(arena, fit, which, longest_time(fit), &series, what));
   double *J = dea_arena_alloc(arena, NEXT_ROWS * n, sizeof *J);
@@ -205,16 +270,15 @@ static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct
   for (size_t k = 0; k < NEXT_ROWS * n; k++) {
     J[k] /= share * fmax(fabs(stress[k % NEXT_ROWS]), 1e-12);
   }
-  dea_information_add(&now, J, NEXT_ROWS, 1);
-  const double gain =
-      dea_information_factor(&now, variance) - dea_information_factor(base, variance);
-  dea_fit_next_add(fit->next, &fit->next_count, what, exp(-0.5 * gain / (double)base->count));
+  add_rows(&now, J, NEXT_ROWS, 1);
+  const double gain = factor(&now, variance) - factor(base, variance);
+  add_next(fit->next, &fit->next_count, what, exp(-0.5 * gain / (double)base->count));
   return DEA_OK;
 }
 
 dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit)
 {
-  struct dea_information base;
+  struct information base;
   double scale[DEA_LSQ_PARAMS_MAX];
   struct dea_arena arena = {.ctx = ctx};
   dea_status status = DEA_OK;
@@ -224,11 +288,116 @@ dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit)
   for (size_t j = 0; j < fit->model.count; j++) {
     scale[j] = fit->model.params[j].scale;
   }
-  dea_information_start(&fit->least_squares, fit->statistics.variance, scale, &base);
+  begin_information(&fit->least_squares, fit->statistics.variance, scale, &base);
   const int last = fit->model.branch_count > 0 ? DEA_COUPON_MODES : DEA_COUPON_MODES - 1;
   for (int which = 0; which <= last && status == DEA_OK; which++) {
     status = weigh(ctx, &arena, fit, which, &base);
   }
   dea_arena_free(&arena);
   return status;
+}
+
+/* ---- a device ---- */
+
+static const double close_correlation = 0.95; // of two parameters that are told
+
+static size_t place_of(const struct information *of, size_t param)
+{
+  size_t a = 0;
+  while (a < of->count && of->active[a] != param) {
+    a++;
+  }
+  return a;
+}
+
+/* What a candidate does for each pair. */
+static void help_pairs(struct dea_device_fit *fit, const struct information *base,
+                       const double *before, const double *after, const char *what)
+{
+  for (size_t k = 0; k < fit->pair_count; k++) {
+    struct dea_device_pair *pair = &fit->pairs[k];
+    const size_t a = place_of(base, pair->first), b = place_of(base, pair->second);
+    if (a == base->count || b == base->count) {
+      continue;
+    }
+    const double shrink = sqrt(fmax(after[a] / before[a], after[b] / before[b]));
+    if (shrink < 0.7 && (pair->next[0] == '\0' || shrink < pair->shrink)) {
+      snprintf(pair->next, sizeof pair->next, "%s", what);
+      pair->shrink = shrink;
+    }
+  }
+}
+
+static void add_pair(struct dea_device_fit *fit, size_t a, size_t b, double correlation)
+{
+  if (fit->pair_count < DEA_DEVICE_PAIRS_MAX) {
+    fit->pairs[fit->pair_count++] =
+        (struct dea_device_pair){.first = a, .second = b, .correlation = correlation};
+  }
+}
+
+/* Pairs that correlate, and parameters that one open direction moves together. */
+static void find_pairs(struct dea_device_fit *fit)
+{
+  const struct dea_lsq_statistics *s = &fit->statistics;
+  for (size_t a = 0; a < s->params; a++) {
+    for (size_t b = 0; b < a; b++) {
+      const double correlation = s->correlation[a * s->params + b];
+      if (isfinite(s->std[a]) && isfinite(s->std[b]) && fabs(correlation) > close_correlation) {
+        add_pair(fit, b, a, correlation);
+      }
+    }
+  }
+  for (size_t k = s->active; k-- > 0;) {
+    const double *direction = s->direction + k * s->params;
+    double largest[2] = {0, 0};
+    size_t index[2] = {0, 0};
+    if (s->singular[k] > 1e-9 * s->singular[0]) {
+      break;
+    }
+    for (size_t j = 0; j < s->params; j++) {
+      const double share = fabs(direction[j] / fit->params[j].param.scale);
+      if (share > largest[0]) {
+        largest[1] = largest[0];
+        index[1] = index[0];
+        largest[0] = share;
+        index[0] = j;
+      } else if (share > largest[1]) {
+        largest[1] = share;
+        index[1] = j;
+      }
+    }
+    if (largest[1] > 1e-3 * largest[0]) {
+      const bool in_order = index[0] < index[1];
+      add_pair(fit, index[in_order ? 0 : 1], index[in_order ? 1 : 0], NAN);
+    }
+  }
+}
+
+void dea_device_identify(struct dea_device_fit *fit, const struct dea_device_candidate *candidates,
+                         size_t count)
+{
+  struct information base, now;
+  double scale[DEA_DEVICE_PARAMS_MAX];
+  double before[DEA_DEVICE_PARAMS_MAX], after[DEA_DEVICE_PARAMS_MAX];
+  struct dea_fit_param params[DEA_DEVICE_PARAMS_MAX];
+  for (size_t j = 0; j < fit->param_count; j++) {
+    params[j] = fit->params[j].param;
+    scale[j] = params[j].scale;
+  }
+  fit->weak_count = dea_fit_identify_weak(params, &fit->statistics, "curves", fit->weak);
+  find_pairs(fit);
+  if (fit->statistics.active == 0 || !isfinite(fit->statistics.variance)) {
+    return;
+  }
+  begin_information(&fit->least_squares, fit->statistics.variance, scale, &base);
+  const double without = factor(&base, before);
+  for (size_t c = 0; c < count; c++) {
+    now = base;
+    add_rows(&now, candidates[c].J, candidates[c].rows, 1);
+    const double gain = factor(&now, after) - without;
+    add_next(fit->next, &fit->next_count, candidates[c].what,
+             exp(-0.5 * gain / (double)base.count));
+    help_pairs(fit, &base, before, after, candidates[c].what);
+  }
 }

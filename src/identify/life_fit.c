@@ -11,6 +11,215 @@
 const char *const dea_life_end_names[DEA_LIFE_ENDS] = {"survived", "stroke", "leakage", "breakdown",
                                                        "as told"};
 
+/* ---- the fit file ---- */
+
+#define AT(member) offsetof(struct dea_life_file, member)
+#define OF(member) offsetof(struct dea_life_specimen, member)
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+const char *const dea_life_clock_names[] = {"cycles", "time", "under_voltage", "charge", NULL};
+const char *const dea_life_clock_units[] = {"cycles", "h", "h", "mC"};
+const double dea_life_clock_factors[] = {1, 1 / 3600.0, 1 / 3600.0, 1e3};
+
+static const struct dea_field specimen_fields[] = {
+    DEA_LABEL_ROW("name", OF(name), "F12", "name of the specimen", .required = true),
+    DEA_LABEL_ROW("reduced", OF(reduced), "[F12-week1.reduced, F12-week2.reduced]",
+                  "folders that dea reduce wrote of its recordings, in time, counted from the "
+                  "folder of this file",
+                  DEA_LIST(1, DEA_LIFE_PARTS_MAX, struct dea_label, OF(reduced_count)),
+                  .lone = true, .absent_text = "its life is given"),
+    DEA_NUMBER_ROW(
+        "life", OF(life), "1", "120000",
+        "its life in the unit of the clock (cycles, h, h, mC), where it is known already",
+        .above_min = true, .max = 1e15, .absent_text = "from its recordings"),
+    DEA_CHOICE_ROW("failed", OF(failed), dea_no_yes, "yes",
+                   "of a given life whether it ended by a failure; of recordings whether the "
+                   "specimen failed at their end where no criterion says so",
+                   .default_text = "no"),
+};
+static const struct dea_record specimen_record = {"specimen", "a specimen that was cycled",
+                                                  specimen_fields, COUNT(specimen_fields)};
+
+static const struct dea_field fields[] = {
+    DEA_FIT_HEAD_FIELDS("name of what is fitted", "batch-7", "none", "what was cycled",
+                        "discs of batch 7 at 3 kV, 10 Hz"),
+    DEA_FIELD_ROW(
+        RECORD, "life", AT(specimens), .record = &specimen_record, .required = true,
+        .doc = "the specimens, those that survived too",
+        .example = "[{name: F12, reduced: F12.reduced}, {name: F13, life: 120000, failed: yes}]",
+        DEA_LIST(1, DEA_LIFE_SPECIMENS_MAX, struct dea_life_specimen, AT(specimen_count))),
+    DEA_CHOICE_ROW("clock", AT(clock), dea_life_clock_names, "under_voltage",
+                   "what a life is counted in: cycles, time (h), time under voltage (h), charge "
+                   "brought to the film (mC)",
+                   .default_text = "cycles"),
+    DEA_NUMBER_ROW("stroke_loss", AT(stroke_loss), "1", "20 %",
+                   "share of its first stroke that a specimen may lose", .above_min = true,
+                   .max = 1, .absent_text = "no failure"),
+    DEA_NUMBER_ROW("largest_leakage", AT(leakage_A), "A", "2 uA",
+                   "current at the held voltage beyond which a specimen has failed",
+                   .above_min = true, .max = 1, .absent_text = "no failure"),
+    DEA_CHOICE_ROW("at_breakdown", AT(breakdown), dea_no_yes, "no",
+                   "whether a breakdown is a failure", .default_text = "yes"),
+    DEA_INTEGER_ROW("reference_cycles", AT(reference_cycles), "100",
+                    "cycles whose mean is the first stroke", .min = 1, .max = 1e6,
+                    .default_text = "10"),
+    DEA_INTEGER_ROW("lasting", AT(lasting), "10",
+                    "cycles in a row that a lost stroke or a leakage has to last; the first of "
+                    "them is the failure",
+                    .min = 1, .max = 1e6, .default_text = "3"),
+};
+/* A finding where a recording stands before this one already: its cycles would count twice. */
+static dea_status check_once(struct dea_context *ctx, const struct dea_life_file *fit, size_t i,
+                             size_t part)
+{
+  const struct dea_label *own = &fit->specimens[i].reduced[part];
+  for (size_t k = 0; k <= i; k++) {
+    const struct dea_life_specimen *other = &fit->specimens[k];
+    for (size_t p = 0; p < (k < i ? other->reduced_count : part); p++) {
+      if (strcmp(other->reduced[p].text, own->text) == 0) {
+        return dea_finding_add(ctx, DEA_ERROR, own->location,
+                               "'%.80s' is a recording of '%.60s' already, in line %zu", own->text,
+                               other->name.text, other->reduced[p].location.line);
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status check_file(struct dea_context *ctx, const void *file)
+{
+  const struct dea_life_file *fit = file;
+  for (size_t i = 0; i < fit->specimen_count; i++) {
+    const struct dea_life_specimen *own = &fit->specimens[i];
+    for (size_t p = 0; p < own->reduced_count; p++) {
+      DEA_TRY(ctx, check_once(ctx, fit, i, p));
+    }
+    if ((own->reduced_count > 0) == (own->life.origin != DEA_ABSENT)) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, own->name.location,
+                                   "'%.60s' needs %s: its recordings, or its life", own->name.text,
+                                   own->reduced_count > 0 ? "one" : "something"));
+    }
+  }
+  return dea_fit_names_check(ctx, fit->specimens, fit->specimen_count, sizeof fit->specimens[0],
+                             "specimen");
+}
+
+const struct dea_fit_form dea_life_form = {
+    {"fit file", "life tests, for Weibull's law of them", fields, COUNT(fields)},
+    sizeof(struct dea_life_file),
+    check_file};
+
+/* ---- a life ---- */
+
+/* Cycles in time, of all recordings of a specimen; NAN: not known. */
+struct rows {
+  size_t count;
+  double *clock[DEA_LIFE_CLOCKS];                   // [count] at the end of each cycle
+  double *asked_V, *stroke, *leakage_A, *breakdown; // [count]; breakdown: how many
+};
+
+static const double same_voltage = 0.99;
+
+/* Whether a cycle is one of the test itself, not of a look at the specimen at a lower voltage. */
+static bool is_judged(const struct rows *rows, size_t i, double largest_V)
+{
+  return fabs(rows->asked_V[i]) >= same_voltage * largest_V;
+}
+
+static double largest_voltage(const struct rows *rows)
+{
+  double largest_V = 0;
+  for (size_t i = 0; i < rows->count; i++) {
+    largest_V = fmax(largest_V, fabs(rows->asked_V[i])); // not NAN
+  }
+  return largest_V;
+}
+
+/* Mean stroke of the first cycles, and the row behind them; NAN where there are not so many. */
+static double first_stroke(const struct rows *rows, double largest_V, size_t cycles, size_t *behind)
+{
+  double sum = 0;
+  size_t n = 0;
+  for (*behind = 0; *behind < rows->count && n < cycles; ++*behind) {
+    if (is_judged(rows, *behind, largest_V) && !isnan(rows->stroke[*behind])) {
+      sum += fabs(rows->stroke[*behind]);
+      n++;
+    }
+  }
+  return n == cycles && n > 0 ? sum / (double)n : NAN;
+}
+
+/* First of `lasting` judged cycles in a row whose value is beyond a limit: below it, or above;
+ * those without a value neither count nor part the others. rows->count: there are none. */
+static size_t first_beyond(const struct rows *rows, const double *values, size_t from,
+                           double largest_V, double limit, bool below, size_t lasting)
+{
+  size_t first = rows->count, n = 0;
+  for (size_t i = from; i < rows->count; i++) {
+    if (!is_judged(rows, i, largest_V) || isnan(values[i])) {
+      continue;
+    }
+    bool beyond = below ? fabs(values[i]) < limit : fabs(values[i]) > limit;
+    first = beyond && n == 0 ? i : first;
+    n = beyond ? n + 1 : 0;
+    if (n == lasting) {
+      return first;
+    }
+  }
+  return rows->count;
+}
+
+/* Of the last judged cycle up to a row; NAN without. */
+static double last_stroke(const struct rows *rows, double largest_V, size_t row)
+{
+  for (size_t i = row + 1; i > 0; i--) {
+    if (is_judged(rows, i - 1, largest_V) && !isnan(rows->stroke[i - 1])) {
+      return rows->stroke[i - 1];
+    }
+  }
+  return NAN;
+}
+
+static size_t first_breakdown(const struct rows *rows)
+{
+  size_t i = 0;
+  while (i < rows->count && !(rows->breakdown[i] > 0)) {
+    i++;
+  }
+  return i;
+}
+
+/* When a specimen failed by the file's criterion, or that it survived. It is applied to what was
+ * recorded, so that a recording goes on behind a failure and another criterion may be asked later
+ * (docs/theory/reduction.md, "Lives"). Only cycles within 1 % of the largest voltage are judged by
+ * stroke and leakage; a breakdown counts in any. rows->count > 0. */
+static void find_end(const struct rows *rows, const struct dea_life_file *criterion,
+                     struct dea_life *out)
+{
+  double largest_V = largest_voltage(rows);
+  size_t behind, at[DEA_LIFE_ENDS];
+  double reference = first_stroke(rows, largest_V, (size_t)criterion->reference_cycles.si, &behind);
+  at[DEA_LIFE_SURVIVED] = at[DEA_LIFE_TOLD] = rows->count;
+  // comparisons with NAN are false: what is not known is not beyond
+  at[DEA_LIFE_STROKE] = first_beyond(rows, rows->stroke, behind, largest_V,
+                                     (1 - criterion->stroke_loss.si) * reference, true,
+                                     (size_t)criterion->lasting.si);
+  at[DEA_LIFE_LEAKAGE] = first_beyond(rows, rows->leakage_A, 0, largest_V, criterion->leakage_A.si,
+                                      false, (size_t)criterion->lasting.si);
+  at[DEA_LIFE_BREAKDOWN] = criterion->breakdown.value == 1 ? first_breakdown(rows) : rows->count;
+  *out = (struct dea_life){.row = rows->count - 1, .first_stroke = reference};
+  for (int end = DEA_LIFE_STROKE; end <= DEA_LIFE_BREAKDOWN; end++) {
+    if (at[end] < rows->count && (out->end == DEA_LIFE_SURVIVED || at[end] < out->row)) {
+      out->end = (enum dea_life_end)end;
+      out->row = at[end];
+    }
+  }
+  out->last_stroke = last_stroke(rows, largest_V, out->row);
+  for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
+    out->clock[k] = rows->clock[k][out->row];
+  }
+}
+
 /* ---- the specimens ---- */
 
 enum column {
@@ -44,7 +253,7 @@ static const struct dea_csv_wanted wanted[COLUMNS] = {
 struct specimen {
   struct dea_csv_columns parts[DEA_LIFE_PARTS_MAX];
   size_t count; // of parts
-  struct dea_life_rows rows;
+  struct rows rows;
 };
 
 static dea_status read_part(struct dea_context *ctx, const struct dea_life_file *file,
@@ -152,20 +361,13 @@ static dea_status judge(struct dea_context *ctx, const struct dea_life_file *fil
                         const struct dea_life_specimen *own, const struct specimen *s,
                         struct dea_life *out)
 {
-  const struct dea_life_criterion criterion = {
-      .stroke_loss = file->stroke_loss.origin != DEA_ABSENT ? file->stroke_loss.si : (double)NAN,
-      .leakage_A = file->leakage_A.origin != DEA_ABSENT ? file->leakage_A.si : (double)NAN,
-      .breakdown = file->breakdown.value == 1,
-      .reference_cycles = (size_t)file->reference_cycles.si,
-      .lasting = (size_t)file->lasting.si,
-  };
   const struct dea_csv_columns *last = &s->parts[s->count - 1];
-  dea_life_judge(&s->rows, &criterion, out);
+  find_end(&s->rows, file, out);
   if (file->stroke_loss.origin != DEA_ABSENT && isnan(out->first_stroke)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, own->name.location,
                                  "'%.60s' has fewer than %zu cycles with a stroke at its largest "
                                  "voltage (reference_cycles): its stroke is not judged",
-                                 own->name.text, criterion.reference_cycles));
+                                 own->name.text, (size_t)file->reference_cycles.si));
   }
   if (out->end == DEA_LIFE_SURVIVED && own->failed.value == 1) {
     out->end = DEA_LIFE_TOLD;

@@ -2,8 +2,59 @@
 #pragma once
 
 #include "base/arena.h"
-#include "identify/life_file.h"
+#include "identify/fit_head.h"
 #include "identify/weibull.h"
+
+enum dea_life_clock {
+  DEA_LIFE_CYCLES,
+  DEA_LIFE_TIME,          // s
+  DEA_LIFE_UNDER_VOLTAGE, // s
+  DEA_LIFE_CHARGE,        // C, brought to the film
+  DEA_LIFE_CLOCKS
+};
+
+enum dea_life_end {
+  DEA_LIFE_SURVIVED,
+  DEA_LIFE_STROKE,
+  DEA_LIFE_LEAKAGE,
+  DEA_LIFE_BREAKDOWN,
+  DEA_LIFE_TOLD, // by who wrote the file
+  DEA_LIFE_ENDS
+};
+
+/* The life of a specimen that was cycled. */
+struct dea_life {
+  enum dea_life_end end;
+  size_t row;                       // of the cycle that failed first, or the last one
+  double clock[DEA_LIFE_CLOCKS];    // at its end
+  double first_stroke, last_stroke; // mean of the first cycles, that by `row`
+};
+
+/* Specimens that were cycled until they failed or the test ended. */
+enum { DEA_LIFE_SPECIMENS_MAX = 200, DEA_LIFE_PARTS_MAX = 16 };
+
+struct dea_life_specimen {
+  struct dea_label name;
+  struct dea_label reduced[DEA_LIFE_PARTS_MAX]; // folders of its recordings, in time
+  size_t reduced_count;
+  struct dea_quantity life; // in the clock's unit, where it is known already
+  struct dea_choice failed;
+};
+
+struct dea_life_file {
+  struct dea_fit_head head;
+  struct dea_life_specimen specimens[DEA_LIFE_SPECIMENS_MAX];
+  size_t specimen_count;
+  struct dea_choice clock, breakdown;
+  struct dea_quantity stroke_loss, reference_cycles, lasting, leakage_A;
+};
+
+/* Words of the clocks, their units, and what a unit is in SI. */
+extern const char *const dea_life_clock_names[];
+extern const char *const dea_life_clock_units[];
+extern const double dea_life_clock_factors[]; // SI -> unit
+
+extern const struct dea_fit_form dea_life_form;
 
 struct dea_life_fit {
   struct dea_arena memory;          // the first member

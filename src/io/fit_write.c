@@ -1,17 +1,149 @@
+/* The files of a fit: NAME.yaml, fit.csv, fit.json and figures. */
+#include "io/fit_files.h"
+
+#include "base/csv_line.h"
 #include "base/file.h"
 #include "base/version.h"
 #include "base/write_file.h"
 #include "base/yaml_write.h"
 #include "figures/fit_figures.h"
+#include "figures/weibull_picture.h"
 #include "io/csv.h"
-#include "io/fit_common.h"
 #include "material/catalogue.h"
+#include "plot/plot.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* ---- the material ---- */
+enum { FIT_JSON_SCHEMA = 1 };
+
+// What kinds have in common -----------------------------------------------------------------------
+
+/* A new fit.json with program, command (NULL: none) and fit file. */
+static json_t *begin_json(const struct dea_fit_head *head, const char *command)
+{
+  json_t *root = json_object();
+  json_object_set_new(root, "schema", json_integer(FIT_JSON_SCHEMA));
+  dea_json_add_text(root, "program", "dea " DEA_VERSION);
+  dea_json_add_text(root, "command", command);
+  dea_json_add_text(root, "file", head->file);
+  dea_json_add_text(root, "sha256", head->sha256);
+  return root;
+}
+
+/* Adds value, uncertainty, interval and what is said of them. */
+static void add_value_json(json_t *object, const struct dea_fit_value *value)
+{
+  dea_json_add(object, "value", value->value);
+  dea_json_add(object, "standard_uncertainty", value->std);
+  dea_json_add(object, "interval_low", value->low);
+  dea_json_add(object, "interval_high", value->high);
+  json_object_set_new(object, "fixed", json_boolean(value->fixed));
+  json_object_set_new(object, "at_bound", json_boolean(value->at_bound));
+  json_object_set_new(object, "determined", json_boolean(!isinf(value->std)));
+  json_object_set_new(object, "interval_bends", json_boolean(value->bends));
+}
+
+/* A parameter of Weibull's law as an object. */
+static json_t *weibull_json(const struct dea_weibull_fit *fit, size_t param, const char *name)
+{
+  json_t *object = json_object();
+  dea_json_add_text(object, "name", name);
+  dea_json_add(object, "value", fit->value[param]);
+  dea_json_add(object, "standard_uncertainty", fit->std[param]);
+  dea_json_add(object, "interval_low", fit->low[param]);
+  dea_json_add(object, "interval_high", fit->high[param]);
+  return object;
+}
+
+/* Adds "correlations", chi-square, rows, condition. scatter_key: of the scatter, where no
+ * uncertainty was given (known). */
+static void add_statistics_json(json_t *root, bool known, const char *scatter_key, double scatter,
+                                const struct dea_lsq_fit *least_squares,
+                                const struct dea_lsq_statistics *statistics)
+{
+  const size_t n = statistics->params;
+  json_t *rows = json_array();
+  for (size_t j = 0; j < n; j++) {
+    json_t *row = json_array();
+    for (size_t l = 0; l < n; l++) {
+      json_array_append_new(row, json_real(statistics->correlation[j * n + l]));
+    }
+    json_array_append_new(rows, row);
+  }
+  json_object_set_new(root, "correlations", rows);
+  json_object_set_new(root, "uncertainty_given", json_boolean(known));
+  dea_json_add(root, scatter_key, known ? NAN : scatter);
+  dea_json_add(root, "chi_square", known ? least_squares->chi2 : NAN);
+  dea_json_add(root, "reduced_chi_square", known ? statistics->reduced_chi2 : NAN);
+  json_object_set_new(root, "widened", json_boolean(statistics->widened));
+  dea_json_add_count(root, "rows", least_squares->rows);
+  dea_json_add(root, "effective_rows", statistics->effective_rows);
+  dea_json_add(root, "condition", statistics->condition);
+}
+
+/* Adds file, hash and number of rows of measurements, and how many of them count. */
+static void add_rows_json(json_t *object, const char *file, const char *sha256, size_t rows,
+                          size_t slack_rows, double lag, double effective)
+{
+  dea_json_add_text(object, "file", file);
+  dea_json_add_text(object, "sha256", sha256);
+  dea_json_add_count(object, "rows", rows);
+  dea_json_add_count(object, "slack_rows", slack_rows);
+  dea_json_add(object, "neighbour_correlation", lag);
+  dea_json_add(object, "effective_rows", effective);
+}
+
+/* Adds "weak", and the next measurements as `next_key`, each called `word`. */
+static void add_advice_json(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], size_t weak_count,
+                            const char *next_key, const char *word, const struct dea_fit_next *next,
+                            size_t next_count)
+{
+  json_t *combinations = json_array(), *measurements = json_array();
+  for (size_t k = 0; k < weak_count; k++) {
+    json_array_append_new(combinations, json_string(weak[k]));
+  }
+  for (size_t k = 0; k < next_count; k++) {
+    json_t *row = json_object();
+    dea_json_add_text(row, word, next[k].what);
+    dea_json_add(row, "error_bars_times", next[k].shrink);
+    json_array_append_new(measurements, row);
+  }
+  json_object_set_new(object, "weak", combinations);
+  json_object_set_new(object, next_key, measurements);
+}
+
+/* Makes the folder and takes the files of an earlier fit out of it. */
+static dea_status create(struct dea_context *ctx, const struct dea_fit_folder *to, const char *yaml,
+                         const char *const figures[], size_t figure_count)
+{
+  const char *const files[] = {yaml, "fit.json", "fit.csv"};
+  for (size_t k = 0; k < 3 + figure_count; k++) {
+    DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, to->path, k < 3 ? files[k] : figures[k - 3],
+                                            to->force));
+  }
+  return dea_folder_create(ctx, to->path);
+}
+
+/* The folder with NAME.yaml (yaml NULL: none), fit.csv and fit.json; root: taken. */
+static dea_status write_folder(struct dea_context *ctx, const struct dea_fit_folder *to,
+                               const char *name, const char *const figures[], size_t figure_count,
+                               const struct dea_text *yaml, const struct dea_text *csv,
+                               json_t *root)
+{
+  char file[DEA_NAME_SIZE + 8], *json = NULL;
+  snprintf(file, sizeof file, "%.63s.yaml", name);
+  dea_status status = dea_json_text(ctx, root, &json);
+  status = status == DEA_OK ? create(ctx, to, file, figures, figure_count) : status;
+  status = status == DEA_OK && yaml != NULL ? dea_text_write(ctx, yaml, to->path, file) : status;
+  status = status == DEA_OK ? dea_text_write(ctx, csv, to->path, "fit.csv") : status;
+  status = status == DEA_OK ? dea_text_file_write(ctx, to->path, "fit.json", json) : status;
+  dea_free(ctx, json);
+  return status;
+}
+
+// A material --------------------------------------------------------------------------------------
 
 static void add_key(struct dea_text *out, const char *indent, const char *key, const char *text)
 {
@@ -210,8 +342,6 @@ static dea_status add_material(struct dea_context *ctx, const struct dea_fit *fi
   return out->failed ? DEA_E_MEMORY : DEA_OK;
 }
 
-/* ---- CSV and JSON ---- */
-
 static void add_rows(struct dea_text *out, const struct dea_fit_curve *curve)
 {
   const struct dea_fit_series *series = curve->series;
@@ -232,7 +362,7 @@ static json_t *values_json(const struct dea_fit *fit)
     json_t *object = json_object();
     dea_json_add_text(object, "name", fit->model.params[j].name);
     dea_json_add_text(object, "unit", fit->model.params[j].unit);
-    dea_fit_json_value(object, &fit->values[j]);
+    add_value_json(object, &fit->values[j]);
     json_array_append_new(array, object);
   }
   return array;
@@ -271,8 +401,8 @@ static json_t *tests_json(const struct dea_fit *fit)
     dea_json_add_text(object, "name", curve->series->test->name.text);
     dea_json_add_text(object, "use", dea_fit_use_names[curve->series->test->use.value]);
     dea_json_add_text(object, "kind", dea_fit_kind_names[curve->series->test->kind.value]);
-    dea_fit_json_rows(object, curve->series->file, curve->series->sha256, curve->series->rows,
-                      curve->series->slack, curve->lag, curve->effective);
+    add_rows_json(object, curve->series->file, curve->series->sha256, curve->series->rows,
+                  curve->series->slack, curve->lag, curve->effective);
     dea_json_add_count(object, "repeated_rows", curve->series->repeated);
     dea_json_add(object, "rms_Pa", curve->rms_Pa);
     dea_json_add(object, "largest_relative", curve->largest);
@@ -284,8 +414,8 @@ static json_t *tests_json(const struct dea_fit *fit)
 static json_t *advice_json(const struct dea_fit *fit)
 {
   json_t *object = json_object(), *stability = json_array(), *spreads = json_array();
-  dea_fit_json_advice(object, fit->weak, fit->weak_count, "next_tests", "test", fit->next,
-                      fit->next_count);
+  add_advice_json(object, fit->weak, fit->weak_count, "next_tests", "test", fit->next,
+                  fit->next_count);
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     json_t *row = json_object();
     dea_json_add_text(row, "mode", dea_coupon_mode_names[mode]);
@@ -309,19 +439,17 @@ static json_t *advice_json(const struct dea_fit *fit)
 
 json_t *dea_fit_json(const struct dea_fit *fit, const char *command)
 {
-  json_t *root = dea_fit_json_begin(&fit->file->head, command);
+  json_t *root = begin_json(&fit->file->head, command);
   dea_json_add_text(root, "material", fit->file->head.name.text);
   dea_json_add_text(root, "law", fit->model.law->name);
   json_object_set_new(root, "laws", laws_json(fit));
   json_object_set_new(root, "parameters", values_json(fit));
-  dea_fit_json_statistics(root, fit->scale_known, "scatter_Pa", fit->scatter_Pa,
-                          &fit->least_squares, &fit->statistics);
+  add_statistics_json(root, fit->scale_known, "scatter_Pa", fit->scatter_Pa, &fit->least_squares,
+                      &fit->statistics);
   json_object_set_new(root, "tests", tests_json(fit));
   json_object_set_new(root, "advice", advice_json(fit));
   return root;
 }
-
-/* ---- the folder ---- */
 
 dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit,
                          const struct dea_fit_folder *to)
@@ -335,12 +463,401 @@ dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit,
     add_rows(&csv, &fit->curves[s]);
   }
   dea_status status = add_material(ctx, fit, &material);
-  status = status == DEA_OK ? dea_fit_folder_write(ctx, to, fit->file->head.name.text, figures, 2,
-                                                   &material, &csv, dea_fit_json(fit, to->command))
+  status = status == DEA_OK ? write_folder(ctx, to, fit->file->head.name.text, figures, 2,
+                                           &material, &csv, dea_fit_json(fit, to->command))
                             : status;
   dea_text_free(&material);
   dea_text_free(&csv);
   dea_c_locale_leave(before);
   DEA_TRY(ctx, status);
   return dea_fit_draw(ctx, fit, to->format, to->path);
+}
+
+// A device ----------------------------------------------------------------------------------------
+
+static void add_device_rows(struct dea_text *out, const struct dea_device_curve *curve)
+{
+  const struct dea_column *column = curve->quantity;
+  for (size_t i = 0; i < curve->rows; i++) {
+    dea_csv_add_name(out, curve->text->name.text);
+    dea_text_add(out, ",%s,%s,%zu,%s", column->key, dea_fit_use_names[curve->text->use.value],
+                 curve->line[i], curve->used[i] ? "yes" : "no");
+    DEA_CSV_ADD(out, 8, 1e-3 * curve->voltage_V[i], 1e3 * curve->depth_m[i],
+                column->factor * curve->value[i], column->factor * curve->std[i],
+                column->factor * curve->model[i], column->factor * curve->model_std[i],
+                column->factor * curve->designed[i]);
+    dea_text_add(out, ",%s", column->display_unit);
+    DEA_CSV_ADD(out, 8, curve->time_s[i]);
+    dea_text_add(out, "\n");
+  }
+}
+
+static json_t *device_values_json(const struct dea_device_fit *fit)
+{
+  json_t *array = json_array();
+  for (size_t j = 0; j < fit->param_count; j++) {
+    const struct dea_device_param *param = &fit->params[j];
+    json_t *object = json_object();
+    dea_json_add_text(object, "name", param->param.name);
+    dea_json_add_text(object, "unit", param->param.unit);
+    dea_json_add_text(object, "film", param->state[0] != '\0' ? param->state + 1 : "");
+    dea_json_add(object, "designed", param->designed);
+    add_value_json(object, &fit->values[j]);
+    dea_json_add(object, "prior", param->param.prior);
+    dea_json_add(object, "prior_std", param->param.prior_std);
+    dea_json_add_text(object, "prior_of", param->prior_of);
+    json_array_append_new(array, object);
+  }
+  return array;
+}
+
+static json_t *curves_json(const struct dea_device_fit *fit)
+{
+  json_t *array = json_array();
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    const struct dea_device_curve *curve = &fit->curves[c];
+    json_t *object = json_object();
+    dea_json_add_text(object, "name", curve->text->name.text);
+    dea_json_add_text(object, "quantity", curve->quantity->key);
+    dea_json_add_text(object, "unit", curve->quantity->si_unit);
+    dea_json_add_text(object, "use", dea_fit_use_names[curve->text->use.value]);
+    add_rows_json(object, curve->file, curve->sha256, curve->rows, curve->slack, curve->lag,
+                  curve->effective);
+    dea_json_add(object, "slack_from_V", curve->slack_from_V);
+    dea_json_add(object, "rms", curve->rms);
+    dea_json_add(object, "largest_relative", curve->largest);
+    json_array_append_new(array, object);
+  }
+  return array;
+}
+
+static json_t *device_advice_json(const struct dea_device_fit *fit)
+{
+  json_t *object = json_object(), *pairs = json_array();
+  add_advice_json(object, fit->weak, fit->weak_count, "next_measurements", "measurement", fit->next,
+                  fit->next_count);
+  for (size_t k = 0; k < fit->pair_count; k++) {
+    const struct dea_device_pair *pair = &fit->pairs[k];
+    json_t *row = json_object();
+    dea_json_add_text(row, "first", fit->params[pair->first].param.name);
+    dea_json_add_text(row, "second", fit->params[pair->second].param.name);
+    dea_json_add(row, "correlation", pair->correlation);
+    dea_json_add_text(row, "would_tell", pair->next);
+    json_array_append_new(pairs, row);
+  }
+  json_object_set_new(object, "not_told_apart", pairs);
+  return object;
+}
+
+json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *command)
+{
+  json_t *root = begin_json(&fit->file->head, command);
+  dea_json_add_text(root, "name", fit->file->head.name.text);
+  dea_json_add_text(root, "design", fit->design_file);
+  dea_json_add_text(root, "design_sha256", fit->design_sha256);
+  dea_json_add_text(root, "model", fit->model);
+  json_object_set_new(root, "parameters", device_values_json(fit));
+  add_statistics_json(root, fit->scale_known, "scatter", fit->scatter, &fit->least_squares,
+                      &fit->statistics);
+  dea_json_add_count(root, "evaluations", fit->evaluations);
+  json_object_set_new(root, "curves", curves_json(fit));
+  json_object_set_new(root, "slack_settled", json_boolean(fit->settled));
+  json_object_set_new(root, "advice", device_advice_json(fit));
+  return root;
+}
+
+/* NAME.yaml, fit.csv and fit.json. */
+static dea_status write_texts(struct dea_context *ctx, const struct dea_device_fit *fit,
+                              const struct dea_fit_folder *to)
+{
+  const size_t count = 2 * (size_t)dea_column_count(ctx);
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_text csv = {.ctx = ctx};
+  char(*names)[64] = dea_arena_alloc(&memory, count, sizeof *names);
+  const char **figures = dea_arena_alloc(&memory, count, sizeof *figures);
+  for (size_t c = 0; figures != NULL && c < count; c++) {
+    snprintf(names[c], sizeof names[c], "fit_%s%.50s", c % 2 == 0 ? "" : "time_",
+             dea_column_at(ctx, (int)(c / 2))->key);
+    figures[c] = names[c];
+  }
+  dea_text_add(&csv, "curve,quantity,use,line,fitted,V (kV),tip depth (mm),measured,measured std,"
+                     "model,model std,as designed,unit,time (s)\n");
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    add_device_rows(&csv, &fit->curves[c]);
+  }
+  dea_status status = dea_arena_status(&memory);
+  status = status == DEA_OK
+               ? write_folder(ctx, to, fit->file->head.name.text, figures, count, &fit->design,
+                              &csv, dea_device_fit_json(fit, to->command))
+               : status;
+  dea_text_free(&csv);
+  dea_arena_free(&memory);
+  return status;
+}
+
+dea_status dea_device_fit_write(struct dea_context *ctx, const struct dea_device_fit *fit,
+                                const struct dea_fit_folder *to)
+{
+  void *before = dea_c_locale_enter();
+  dea_status status = write_texts(ctx, fit, to);
+  dea_c_locale_leave(before);
+  DEA_TRY(ctx, status);
+  return dea_device_fit_draw(ctx, fit, to->format, to->path);
+}
+
+// Breakdown ---------------------------------------------------------------------------------------
+
+static void add_power(struct dea_text *out, const struct dea_breakdown_fit *fit,
+                      enum dea_weibull_param k, const struct dea_quantity *given, const char *key)
+{
+  if (!fit->data.held[k] || given->origin != DEA_ABSENT) {
+    dea_text_add(out, ", %s: %.6g", key, fit->fit.value[k]);
+    if (k == DEA_WEIBULL_THICKNESS) {
+      dea_text_add(out, ", reference_thickness: %.6g m", fit->data.thickness0_m);
+    }
+  }
+}
+
+/* The item of `breakdown`, in one line. */
+static void add_breakdown_law(struct dea_text *out, const struct dea_breakdown_fit *fit)
+{
+  const struct dea_breakdown_file *file = fit->file;
+  const struct dea_weibull_fit *w = &fit->fit;
+  dea_text_add(out, "[{id: fit, at_rest: %.6g V/m, value_range: [%.6g V/m, %.6g V/m]",
+               w->value[DEA_WEIBULL_FIELD], w->low_95, w->high_95);
+  add_power(out, fit, DEA_WEIBULL_STRETCH, &file->exponent, "exponent");
+  add_power(out, fit, DEA_WEIBULL_THICKNESS, &file->thickness_exponent, "thickness_exponent");
+  dea_text_add(out, ", weibull_shape: %.6g, reference_area: %.6g m^2, uncertainty: \"",
+               w->value[DEA_WEIBULL_SHAPE], fit->data.area0_m2);
+  dea_text_add(out,
+               "value_range is the 95 %% interval of at_rest; standard uncertainties: at_rest "
+               "%.3g V/um, weibull_shape %.2g",
+               1e-6 * w->std[DEA_WEIBULL_FIELD], w->std[DEA_WEIBULL_SHAPE]);
+  if (!fit->data.held[DEA_WEIBULL_STRETCH]) {
+    dea_text_add(out, ", exponent %.2g", w->std[DEA_WEIBULL_STRETCH]);
+  }
+  if (!fit->data.held[DEA_WEIBULL_THICKNESS]) {
+    dea_text_add(out, ", thickness_exponent %.2g", w->std[DEA_WEIBULL_THICKNESS]);
+  }
+  dea_text_add(out, "\", source: \"");
+  if (file->head.source.text[0] != '\0') {
+    dea_yaml_add_quoted(out, file->head.source.text, strlen(file->head.source.text));
+    dea_text_add(out, "; ");
+  }
+  dea_text_add(out, "dea %s fit of %s (SHA-256 %s) to %s (%s)\"", DEA_VERSION,
+               dea_path_name(file->head.file), file->head.sha256, dea_path_name(fit->tests_file),
+               fit->sha256);
+  const double stretch = dea_breakdown_fit_stretch(fit);
+  dea_text_add(out, ", note: \"%zu films, of which %zu broke; the others count as survivors",
+               fit->rows, w->broken);
+  if (fabs(stretch - 1) > 1e-9) {
+    dea_text_add(out, "; at_rest is that of films at the stretch %.4g, all that were tested",
+                 stretch);
+  }
+  dea_text_add(out, "\"}]");
+}
+
+/* The catalogue's material with another name and this law. */
+static dea_status add_breakdown_material(struct dea_context *ctx,
+                                         const struct dea_breakdown_fit *fit, struct dea_text *out)
+{
+  const struct dea_breakdown_file *file = fit->file;
+  struct dea_catalogue_entry *entry;
+  struct dea_text law = {.ctx = ctx};
+  DEA_TRY(ctx, dea_catalogue_read(ctx, file->material.text, file->material.location, &entry));
+  add_breakdown_law(&law, fit);
+  dea_status status = law.failed ? DEA_E_MEMORY : DEA_OK;
+  status =
+      status == DEA_OK ? dea_yaml_override(ctx, entry->yaml, "name", file->head.name.text) : status;
+  status = status == DEA_OK ? dea_yaml_override(ctx, entry->yaml, "breakdown", dea_text_get(&law))
+                            : status;
+  if (status == DEA_OK) {
+    dea_text_add(out, "# Written by dea %s fit: %s with the breakdown law of %s.\n", DEA_VERSION,
+                 file->material.text, dea_path_name(fit->tests_file));
+    dea_yaml_write(dea_yaml_root(entry->yaml), out);
+    status = out->failed ? DEA_E_MEMORY : DEA_OK;
+  }
+  dea_text_free(&law);
+  dea_catalogue_destroy(ctx, entry);
+  return status;
+}
+
+static void add_film_rows(struct dea_text *csv, const struct dea_breakdown_fit *fit)
+{
+  dea_text_add(csv, "line,field (V/um),survived,stretch,thickness (um),area (mm^2),"
+                    "field on the reference (V/um),chance by the law\n");
+  for (size_t i = 0; i < fit->rows; i++) {
+    const double reference = dea_breakdown_fit_reference_field(fit, i);
+    double std;
+    const double z = dea_weibull_z(&fit->fit, reference, &std);
+    dea_text_add(csv, "%zu,%.8g,%d,%.8g,%.8g,%.8g,%.8g,%.6g\n", fit->line[i],
+                 1e-6 * fit->field_V_per_m[i], fit->survived[i], fit->stretch[i],
+                 1e6 * fit->thickness_m[i], 1e6 * fit->area_m2[i], 1e-6 * reference,
+                 -expm1(-exp(z)));
+  }
+}
+
+json_t *dea_breakdown_fit_json(const struct dea_breakdown_fit *fit, const char *command)
+{
+  static const char *const keys[DEA_WEIBULL_PARAMS] = {"at_rest_V_per_m", "weibull_shape",
+                                                       "exponent", "thickness_exponent"};
+  json_t *root = begin_json(&fit->file->head, command), *list = json_array();
+  dea_json_add_text(root, "tests", fit->tests_file);
+  dea_json_add_text(root, "tests_sha256", fit->sha256);
+  dea_json_add_count(root, "films", fit->rows);
+  dea_json_add_count(root, "broken", fit->fit.broken);
+  dea_json_add(root, "log_likelihood", fit->fit.log_likelihood);
+  dea_json_add(root, "reference_thickness_m", fit->data.thickness0_m);
+  dea_json_add(root, "reference_area_m2", fit->data.area0_m2);
+  for (size_t k = 0; k < DEA_WEIBULL_PARAMS; k++) {
+    json_t *object = weibull_json(&fit->fit, k, keys[k]);
+    json_object_set_new(object, "fixed", json_boolean(fit->data.held[k]));
+    json_array_append_new(list, object);
+  }
+  json_object_set_new(root, "parameters", list);
+  dea_json_add(root, "at_rest_low_95_V_per_m", fit->fit.low_95);
+  dea_json_add(root, "at_rest_high_95_V_per_m", fit->fit.high_95);
+  return root;
+}
+
+static dea_status draw_breakdown(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
+                                 const struct dea_plot_format *format, const char *directory)
+{
+  double *field = dea_alloc(ctx, fit->rows, sizeof *field);
+  DEA_TRY_MEMORY(field != NULL);
+  for (size_t i = 0; i < fit->rows; i++) {
+    field[i] = dea_breakdown_fit_reference_field(fit, i);
+  }
+  const struct dea_weibull_picture picture = {
+      .caption = "share of films that have broken over the true field on the reference film, and "
+                 "Weibull's law of it",
+      .x_label = "Field on the reference film (V/\302\265m)",
+      .y_label = "Films broken (%)",
+      .points = "films",
+      .factor = 1e-6,
+      .rows = fit->rows,
+      .values = field,
+      .survived = fit->survived,
+      .fit = &fit->fit,
+  };
+  dea_status status = dea_weibull_draw(ctx, &picture, format, directory);
+  dea_free(ctx, field);
+  return status;
+}
+
+dea_status dea_breakdown_fit_write(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
+                                   const struct dea_fit_folder *to)
+{
+  static const char *const figures[] = {"fit"};
+  struct dea_text csv = {.ctx = ctx}, material = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  add_film_rows(&csv, fit);
+  dea_status status = add_breakdown_material(ctx, fit, &material);
+  dea_c_locale_leave(before);
+  status = status == DEA_OK
+               ? write_folder(ctx, to, fit->file->head.name.text, figures, 1, &material, &csv,
+                              dea_breakdown_fit_json(fit, to->command))
+               : status;
+  dea_text_free(&csv);
+  dea_text_free(&material);
+  DEA_TRY(ctx, status);
+  return draw_breakdown(ctx, fit, to->format, to->path);
+}
+
+// Lives -------------------------------------------------------------------------------------------
+
+static void add_life_rows(struct dea_text *csv, const struct dea_life_fit *fit)
+{
+  dea_text_add(csv, "specimen,failed,why,cycles,time (h),under voltage (h),charge (mC),"
+                    "last over first stroke,chance of a shorter life by the law\n");
+  for (size_t i = 0; i < fit->rows; i++) {
+    const struct dea_life *life = &fit->lives[i];
+    dea_csv_add_name(csv, fit->file->specimens[i].name.text);
+    dea_text_add(csv, ",%d,%s", !fit->survived[i], dea_life_end_names[life->end]);
+    for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
+      DEA_CSV_ADD(csv, 8, dea_life_clock_factors[k] * life->clock[k]);
+    }
+    double std;
+    DEA_CSV_ADD(csv, 8, fabs(life->last_stroke) / life->first_stroke,
+                fit->has_law ? -expm1(-exp(dea_weibull_z(&fit->fit, fit->value[i], &std)))
+                             : (double)NAN);
+    dea_text_add(csv, "\n");
+  }
+}
+
+static json_t *specimens_json(const struct dea_life_fit *fit)
+{
+  static const char *const keys[DEA_LIFE_CLOCKS] = {"cycles", "time_s", "under_voltage_s",
+                                                    "charge_C"};
+  json_t *list = json_array();
+  for (size_t i = 0; i < fit->rows; i++) {
+    const struct dea_life *life = &fit->lives[i];
+    json_t *object = json_object();
+    dea_json_add_text(object, "name", fit->file->specimens[i].name.text);
+    dea_json_add_text(object, "end", dea_life_end_names[life->end]);
+    for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
+      dea_json_add(object, keys[k], life->clock[k]);
+    }
+    dea_json_add(object, "first_stroke", life->first_stroke);
+    dea_json_add(object, "last_stroke", life->last_stroke);
+    json_array_append_new(list, object);
+  }
+  return list;
+}
+
+json_t *dea_life_fit_json(const struct dea_life_fit *fit, const char *command)
+{
+  static const char *const keys[2] = {"scale", "shape"};
+  const struct dea_life_file *file = fit->file;
+  json_t *root = begin_json(&file->head, command), *list = json_array();
+  dea_json_add_text(root, "clock", dea_life_clock_names[file->clock.value]);
+  dea_json_add_count(root, "specimens", fit->rows);
+  dea_json_add_count(root, "failed", fit->failed);
+  json_object_set_new(root, "lives", specimens_json(fit));
+  for (size_t k = 0; k < 2 && fit->has_law; k++) {
+    json_array_append_new(list, weibull_json(&fit->fit, k, keys[k]));
+  }
+  json_object_set_new(root, "parameters", list);
+  if (fit->has_law) {
+    dea_json_add(root, "log_likelihood", fit->fit.log_likelihood);
+    dea_json_add(root, "scale_low_95", fit->fit.low_95);
+    dea_json_add(root, "scale_high_95", fit->fit.high_95);
+  }
+  return root;
+}
+
+static dea_status draw_life(struct dea_context *ctx, const struct dea_life_fit *fit,
+                            const struct dea_plot_format *format, const char *directory)
+{
+  static const char *const labels[DEA_LIFE_CLOCKS] = {
+      "Cycles", "Time (h)", "Time under voltage (h)", "Charge brought to the film (mC)"};
+  const int clock = fit->file->clock.value;
+  const struct dea_weibull_picture picture = {
+      .caption = "share of specimens that have failed over their life, and Weibull's law of it",
+      .x_label = labels[clock],
+      .y_label = "Specimens failed (%)",
+      .points = "failed",
+      .logarithmic = true,
+      .factor = dea_life_clock_factors[clock],
+      .rows = fit->rows,
+      .values = fit->value,
+      .survived = fit->survived,
+      .fit = &fit->fit,
+  };
+  return dea_weibull_draw(ctx, &picture, format, directory);
+}
+
+dea_status dea_life_fit_write(struct dea_context *ctx, const struct dea_life_fit *fit,
+                              const struct dea_fit_folder *to)
+{
+  static const char *const figures[] = {"fit"};
+  struct dea_text csv = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  add_life_rows(&csv, fit);
+  dea_c_locale_leave(before);
+  dea_status status = write_folder(ctx, to, fit->file->head.name.text, figures, 1, NULL, &csv,
+                                   dea_life_fit_json(fit, to->command));
+  dea_text_free(&csv);
+  DEA_TRY(ctx, status);
+  return fit->has_law ? draw_life(ctx, fit, to->format, to->path) : DEA_OK;
 }

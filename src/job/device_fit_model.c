@@ -238,7 +238,7 @@ dea_status dea_device_model_begin(struct dea_device_model *model)
     model->memo[k].points = NULL;
   }
   model->states = NULL;
-  if (model->type->load != NULL && !model->slack_too) {
+  if (model->type->load != NULL) {
     model->states = dea_alloc(model->ctx, model->stop_count, sizeof *model->states);
     return model->states != NULL ? DEA_OK : DEA_E_MEMORY;
   }

@@ -42,7 +42,6 @@ struct dea_device_model {
   double *voltage_V; // [stop_count] of a group in time its times [s]; in the arena of who fills it
   bool *wanted;      // [stop_count]: the others are not computed where they come last in a group;
                      // dea_device_model_want changes them
-  bool slack_too;    // rows count where the film is slack: no warm starts
   struct dea_device_memo memo[DEA_DEVICE_MEMO];
   size_t memo_next;
   struct dea_state *states; // [stop_count] of the last evaluation, owned; NULL: no warm starts
@@ -81,19 +80,13 @@ dea_status dea_device_model_sweep(struct dea_device_model *model, const double *
 /* A parameter, a text of a fit file, with what the design says of it: unit, limits, value; where it
  * starts, which with whole numbers may be 0. Errors are findings, the status DEA_OK also then. */
 dea_status dea_device_param_build(struct dea_context *ctx,
-                                  const struct dea_fit_parameter_text *text,
+                                  const struct dea_fit_parameter_text *asked,
                                   const struct dea_device_param_source *source,
                                   struct dea_device_param *out);
 /* A number for a parameter, with its unit and, of a length in the film, its state; in SI. Errors
  * are findings, the status DEA_OK also then and *out NAN. */
 dea_status dea_device_param_number(struct dea_context *ctx, const struct dea_device_param *param,
                                    const struct dea_label *label, double *out);
-/* All parameters of a fit file with what the design says of them: unit, limits, value. Errors are
- * findings; DEA_E_DESIGN then. */
-dea_status dea_device_params_create(struct dea_context *ctx, const struct dea_device_file *file,
-                                    const struct dea_design *design,
-                                    const struct dea_device *device, struct dea_device_param *out);
-
 /* Values that take the place of a design's own. */
 struct dea_device_values {
   const struct dea_device_param *params; // [count]
@@ -108,3 +101,15 @@ struct dea_device_values {
 dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_design_bytes *file,
                                   const struct dea_device *device,
                                   const struct dea_device_values *with, struct dea_text *out);
+
+// Parts of a fit (device_fit_run.h)
+
+/* Reads the measured curves, one a quantity of each file. Errors are findings. */
+dea_status dea_device_curves_read(struct dea_context *ctx, struct dea_device_fit *fit);
+/* Sets groups and stops of a model: each voltage once, rising; and the stop of each row. */
+dea_status dea_device_stops_build(struct dea_context *ctx, struct dea_device_fit *fit,
+                                  struct dea_device_model *model);
+/* The fitted design as a file, into fit->design; file: as it was, device: built from it. */
+dea_status dea_device_design_build(struct dea_context *ctx, struct dea_device_fit *fit,
+                                   const struct dea_design_bytes *file,
+                                   const struct dea_device *device);

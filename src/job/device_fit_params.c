@@ -10,13 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-struct work {
-  struct dea_context *ctx;
-  struct dea_device_param_source source;
-};
-
-// Priors ------------------------------------------------------------------------------------------
-
 #define AT(member) offsetof(struct dea_material, member)
 
 /* What a material of the catalogue says of a parameter; NAN where it says nothing. law: that the
@@ -52,23 +45,23 @@ static void find_value(const struct dea_material_data *data, const struct dea_de
 }
 
 /* Puts numbers in the place of the name of a material. */
-static dea_status prior_of_material(struct work *w, struct dea_fit_parameter_text *text,
+static dea_status prior_of_material(struct dea_context *ctx, const struct dea_device *device,
+                                    struct dea_fit_parameter_text *text,
                                     struct dea_device_param *out)
 {
   struct dea_catalogue_entry *entry;
   double value, std;
-  DEA_TRY(w->ctx, dea_catalogue_read(w->ctx, text->prior.text, text->prior.location, &entry));
-  find_value(&entry->data, out, dea_material_of(w->source.device, out->material)->law, &value,
-             &std);
-  dea_catalogue_destroy(w->ctx, entry);
+  DEA_TRY(ctx, dea_catalogue_read(ctx, text->prior.text, text->prior.location, &entry));
+  find_value(&entry->data, out, dea_material_of(device, out->material)->law, &value, &std);
+  dea_catalogue_destroy(ctx, entry);
   snprintf(out->prior_of, sizeof out->prior_of, "%.63s", text->prior.text);
   if (isnan(value)) {
-    DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, text->prior.location,
-                                    "the material '%.40s' says nothing of %s", text->prior.text,
-                                    out->param.name));
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, text->prior.location,
+                                 "the material '%.40s' says nothing of %s", text->prior.text,
+                                 out->param.name));
   } else if (text->prior_std.text[0] == '\0' && isnan(std)) {
-    DEA_TRY(w->ctx,
-            dea_finding_add(w->ctx, DEA_ERROR, text->prior.location,
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_ERROR, text->prior.location,
                             "the material '%.40s' gives no uncertainty of %s: say one (prior_std)",
                             text->prior.text, out->param.name));
   }
@@ -88,28 +81,26 @@ static bool names_material(const struct dea_label *prior)
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-// All of it ---------------------------------------------------------------------------------------
-
 /* Start and scale, once bounds and priors are known. */
-static dea_status settle(struct work *w, const struct dea_fit_parameter_text *text,
-                         bool start_given, struct dea_device_param *out)
+static dea_status settle(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
+                         bool whole, bool start_given, struct dea_device_param *out)
 {
   struct dea_fit_param *param = &out->param;
   char shown[80];
   if (!(param->start >= param->low && param->start <= param->high)) {
     dea_device_param_text(out, param->start, 6, shown);
-    return dea_finding_add(
-        w->ctx, DEA_ERROR, start_given ? text->start.location : text->name.location,
-        "%s starts at %.40s, outside of its bounds %.6g and %.6g%s%s", param->name, shown,
-        param->low, param->high, DEA_UNIT_BEHIND(param->unit));
+    return dea_finding_add(ctx, DEA_ERROR, start_given ? text->start.location : text->name.location,
+                           "%s starts at %.40s, outside of its bounds %.6g and %.6g%s%s",
+                           param->name, shown, param->low, param->high,
+                           DEA_UNIT_BEHIND(param->unit));
   }
   const bool bounded = text->low.text[0] != '\0' && text->high.text[0] != '\0';
   param->scale = fabs(param->start);
   if (bounded && param->scale < 0.25 * (param->high - param->low)) {
     param->scale = 0.25 * (param->high - param->low);
   }
-  if (param->scale == 0 && !w->source.whole) {
-    return dea_finding_add(w->ctx, DEA_ERROR, text->name.location,
+  if (param->scale == 0 && !whole) {
+    return dea_finding_add(ctx, DEA_ERROR, text->name.location,
                            "%s starts at 0, which does not say what a large change is: give low "
                            "and high",
                            param->name);
@@ -117,15 +108,17 @@ static dea_status settle(struct work *w, const struct dea_fit_parameter_text *te
   return DEA_OK;
 }
 
-static dea_status build_one(struct work *w, const struct dea_fit_parameter_text *asked,
-                            struct dea_device_param *out)
+dea_status dea_device_param_build(struct dea_context *ctx,
+                                  const struct dea_fit_parameter_text *asked,
+                                  const struct dea_device_param_source *source,
+                                  struct dea_device_param *out)
 {
   struct dea_fit_parameter_text text = *asked;
   const char *name = text.name.text;
   bool good;
   *out = (struct dea_device_param){.state = ""};
   out->param = (struct dea_fit_param){.start = NAN, .prior = NAN, .prior_std = NAN};
-  DEA_TRY(w->ctx, dea_device_param_find(w->ctx, &w->source, &text.name, out, &good));
+  DEA_TRY(ctx, dea_device_param_find(ctx, source, &text.name, out, &good));
   if (!good) {
     return DEA_OK;
   }
@@ -134,34 +127,27 @@ static dea_status build_one(struct work *w, const struct dea_fit_parameter_text 
     const char *state = dea_device_param_split_state(labels[k]->text);
     out->state = out->state[0] == '\0' ? state : out->state;
     if (state[0] != '\0' && strcmp(state, out->state) != 0) {
-      return dea_finding_add(w->ctx, DEA_ERROR, labels[k]->location,
+      return dea_finding_add(ctx, DEA_ERROR, labels[k]->location,
                              "%s is a length%s in the design: write it so here too", name,
                              out->state);
     }
   }
-  DEA_TRY(w->ctx, names_material(&text.prior) ? prior_of_material(w, &text, out) : DEA_OK);
+  DEA_TRY(ctx, names_material(&text.prior) ? prior_of_material(ctx, source->device, &text, out)
+                                           : DEA_OK);
   const bool start_given = text.start.text[0] != '\0';
   if (!start_given && isnan(out->designed)) {
-    return dea_finding_add(w->ctx, DEA_ERROR, text.name.location,
+    return dea_finding_add(ctx, DEA_ERROR, text.name.location,
                            "the design has no single value of %s: give a start", name);
   }
   if (!start_given) {
     snprintf(text.start.text, sizeof text.start.text, "%.17g%s%s", out->designed,
              DEA_UNIT_BEHIND(out->param.unit));
   }
-  const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
-  DEA_TRY(w->ctx, dea_fit_param_read(w->ctx, &text, &out->param));
-  return dea_finding_count(w->ctx, DEA_ERROR) == errors ? settle(w, &text, start_given, out)
-                                                        : DEA_OK;
-}
-
-dea_status dea_device_param_build(struct dea_context *ctx,
-                                  const struct dea_fit_parameter_text *text,
-                                  const struct dea_device_param_source *source,
-                                  struct dea_device_param *out)
-{
-  struct work w = {.ctx = ctx, .source = *source};
-  return build_one(&w, text, out);
+  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  DEA_TRY(ctx, dea_fit_param_read(ctx, &text, &out->param));
+  return dea_finding_count(ctx, DEA_ERROR) == errors
+             ? settle(ctx, &text, source->whole, start_given, out)
+             : DEA_OK;
 }
 
 dea_status dea_device_param_number(struct dea_context *ctx, const struct dea_device_param *param,
@@ -180,18 +166,4 @@ dea_status dea_device_param_number(struct dea_context *ctx, const struct dea_dev
   }
   return dea_finding_add(ctx, DEA_ERROR, label->location, "%s: '%.60s': %s", param->param.name,
                          label->text, why);
-}
-
-dea_status dea_device_params_create(struct dea_context *ctx, const struct dea_device_file *file,
-                                    const struct dea_design *design,
-                                    const struct dea_device *device, struct dea_device_param *out)
-{
-  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  struct work w = {.ctx = ctx, .source = {.design = design, .device = device}};
-  for (size_t k = 0; k < file->parameter_count; k++) {
-    DEA_TRY(ctx, build_one(&w, &file->parameters[k], &out[k]));
-  }
-  return dea_finding_count(ctx, DEA_ERROR) == errors
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_DESIGN, "the parameters of '%s' have errors", file->head.file);
 }

@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/yaml_write.h"
-#include "job/device_fit_parts.h"
+#include "job/device_fit_model.h"
 #include "result/observation.h"
 #include "result/provenance.h"
 #include "study/design_file.h"
@@ -85,10 +85,13 @@ static dea_status read_design(struct work *w)
 static dea_status build_params(struct work *w)
 {
   struct dea_device_fit *fit = w->fit;
-  DEA_TRY(w->ctx, dea_device_params_create(w->ctx, fit->file, w->design, w->device, fit->params));
+  const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
+  const struct dea_device_param_source source = {.design = w->design, .device = w->device};
   fit->param_count = fit->file->parameter_count;
   for (size_t j = 0; j < fit->param_count; j++) {
     const struct dea_fit_param *param = &fit->params[j].param;
+    DEA_TRY(w->ctx,
+            dea_device_param_build(w->ctx, &fit->file->parameters[j], &source, &fit->params[j]));
     w->start[j] = param->start;
     w->low[j] = param->low;
     w->high[j] = param->high;
@@ -97,7 +100,10 @@ static dea_status build_params(struct work *w)
   }
   w->model.params = fit->params;
   w->model.param_count = fit->param_count;
-  return DEA_OK;
+  return dea_finding_count(w->ctx, DEA_ERROR) == errors
+             ? DEA_OK
+             : dea_fail(w->ctx, DEA_E_DESIGN, "the parameters of '%s' have errors",
+                        fit->file->head.file);
 }
 
 /* In time every step is kept, and short enough for derivatives by differences. */
@@ -126,42 +132,31 @@ static dea_status build_fine(struct work *w)
   return status;
 }
 
-/* Curves in time want a waveform, and a model that knows time. */
-static dea_status check_times(struct work *w)
+/* Curves in time want a waveform, and a model that knows time; those with a tip one that can hold
+ * it. */
+static dea_status check_kinds(struct work *w)
 {
+  bool in_time = false;
   for (size_t c = 0; c < w->fit->curve_count; c++) {
     const struct dea_choice *kind = &w->fit->curves[c].text->kind;
-    const bool lacks_waveform = w->design->drive.waveform == NULL;
-    if (kind->value != DEA_DEVICE_TRANSIENT) {
-      continue;
-    }
-    if (lacks_waveform || w->model.type->advance == NULL) {
+    const bool timed = kind->value == DEA_DEVICE_TRANSIENT;
+    const bool plays_nothing = timed && w->design->drive.waveform == NULL;
+    const char *lacks = timed && w->model.type->advance == NULL ? "transients"
+                        : kind->value == DEA_DEVICE_FORCE && w->model.type->indent == NULL
+                            ? "a tip that is held"
+                            : NULL;
+    if (plays_nothing || lacks != NULL) {
       DEA_TRY(w->ctx,
-              lacks_waveform
+              plays_nothing
                   ? dea_finding_add(w->ctx, DEA_ERROR, kind->location,
                                     "the design plays nothing: it needs drive.waveform")
                   : dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                                    "the model %s does not support transients", w->fit->model));
+                                    "the model %s does not support %s", w->fit->model, lacks));
       return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
     }
-    return build_fine(w);
+    in_time = in_time || timed;
   }
-  return DEA_OK;
-}
-
-/* Curves with a tip that the model cannot hold. */
-static dea_status check_tips(struct work *w)
-{
-  for (size_t c = 0; c < w->fit->curve_count && w->model.type->indent == NULL; c++) {
-    const struct dea_choice *kind = &w->fit->curves[c].text->kind;
-    if (kind->value == DEA_DEVICE_FORCE) {
-      DEA_TRY(w->ctx,
-              dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                              "the model %s does not support a tip that is held", w->fit->model));
-      return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
-    }
-  }
-  return DEA_OK;
+  return in_time ? build_fine(w) : DEA_OK;
 }
 
 /* Whether all fitted rows have uncertainties, or none and all are of one quantity. */
@@ -283,11 +278,10 @@ static void cut_slack(struct work *w)
   memset(w->wanted, 0, w->model.stop_count * sizeof *w->wanted);
   for (size_t c = 0; c < w->fit->curve_count; c++) {
     struct dea_device_curve *curve = &w->fit->curves[c];
-    const bool cut = curve->text->slack.value == DEA_DEVICE_SLACK_CUT;
     curve->slack = 0;
     curve->slack_from_V = INFINITY;
     for (size_t i = 0; i < curve->rows; i++) {
-      const bool slack = cut && w->slack[curve->stop[i]];
+      const bool slack = w->slack[curve->stop[i]];
       curve->used[i] = is_fitted(curve) && !slack;
       curve->slack += slack ? 1U : 0U;
       if (slack && fabs(curve->voltage_V[i]) < fabs(curve->slack_from_V)) {
@@ -304,9 +298,8 @@ static bool cuts_others(const struct work *w)
 {
   for (size_t c = 0; c < w->fit->curve_count; c++) {
     const struct dea_device_curve *curve = &w->fit->curves[c];
-    const bool cut = curve->text->slack.value == DEA_DEVICE_SLACK_CUT;
     for (size_t i = 0; i < curve->rows && is_fitted(curve); i++) {
-      if (curve->used[i] == (cut && w->slack[curve->stop[i]])) {
+      if (curve->used[i] == w->slack[curve->stop[i]]) {
         return true;
       }
     }
@@ -415,18 +408,13 @@ static dea_status prepare(struct work *w)
 {
   struct dea_load_point *own;
   DEA_TRY(w->ctx, dea_device_curves_read(w->ctx, w->fit));
-  DEA_TRY(w->ctx, check_tips(w));
-  DEA_TRY(w->ctx, check_times(w));
+  DEA_TRY(w->ctx, check_kinds(w));
   DEA_TRY(w->ctx, check_uncertainties(w));
   DEA_TRY(w->ctx, dea_device_stops_build(w->ctx, w->fit, &w->model));
   w->slack = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->slack);
   w->wanted = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->wanted);
   own = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *own);
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
-  for (size_t c = 0; c < w->fit->curve_count; c++) {
-    w->model.slack_too =
-        w->model.slack_too || w->fit->curves[c].text->slack.value == DEA_DEVICE_SLACK_KEEP;
-  }
   DEA_TRY(w->ctx, dea_device_model_begin(&w->model));
   DEA_TRY(w->ctx, keep_designed(w));
   if (!w->starts_designed) {
@@ -715,7 +703,8 @@ static dea_status report_fit(struct work *w, const struct slopes *s)
     }
   }
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
-  return dea_device_identify(w->ctx, w->fit, candidates, count);
+  dea_device_identify(w->fit, candidates, count);
+  return DEA_OK;
 }
 
 // All of it ---------------------------------------------------------------------------------------
@@ -751,6 +740,17 @@ static dea_status run(struct work *w)
   DEA_TRY(w->ctx, prepare(w));
   DEA_TRY(w->ctx, solve_all(w));
   return finish(w);
+}
+
+void dea_device_fit_destroy(struct dea_context *ctx, struct dea_device_fit *fit)
+{
+  if (fit != NULL) {
+    dea_lsq_statistics_free(&fit->statistics);
+    dea_lsq_free(&fit->least_squares);
+    dea_text_free(&fit->design);
+    dea_arena_free(&fit->memory);
+    dea_free(ctx, fit);
+  }
 }
 
 dea_status dea_device_fit_run(struct dea_context *ctx, const struct dea_device_file *file,

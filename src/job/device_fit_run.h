@@ -10,3 +10,4 @@
  * give it. out: owned by the caller (dea_device_fit_destroy), NULL on failure. */
 dea_status dea_device_fit_run(struct dea_context *ctx, const struct dea_device_file *file,
                               const struct dea_fit_options *options, struct dea_device_fit **out);
+void dea_device_fit_destroy(struct dea_context *ctx, struct dea_device_fit *fit);

@@ -198,7 +198,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   DEA_TRY(ctx, job->status = open_folder(ctx, job, result));
   *began = true;
   const struct dea_study_services services = {job->keep.directory != NULL ? &job->keep.sink : NULL,
-                                              &dea_rerun_designs, job->processes};
+                                              &dea_rerun_designs};
   const double began_s = dea_clock_s();
   for (size_t i = 0; i < job->model_count && first != DEA_E_INTERRUPTED && !job->keep.refused;
        i++) {

@@ -311,7 +311,6 @@ TEST(test_grid)
   command_expect("sweep mine.yaml", 5, "another question");
 }
 
-/* Killed again and again: in the end every case is there, and once. */
 /* A sparse grid between whose designs numbers are within the error that they state; one of a higher
  * level takes over what is there. */
 TEST(test_sparse_grid)
@@ -352,6 +351,37 @@ TEST(test_sparse_grid)
   assert_contains(command_out, "designs: 29 of 29 are there, 16 of them");
 }
 
+/* The spread of samples with correlations is the band that dea run makes of the same, to what the
+ * sampling leaves (no more than plain random samples: 1 / sqrt(N)). */
+TEST(test_correlated)
+{
+  static char text[COMMAND_TEXT_MAX];
+  static const char key[] = "\"electrode_edge_u_m\": ";
+  const char *last = NULL;
+  double std;
+  write_file("{name: film.thickness, distribution: normal, mean: 94 um, std: 0.1 um}, "
+             "{name: pre_stretch, distribution: normal, mean: 1.42, std: 0.001}",
+             "plan: sobol\nsamples: 1024\ncorrelations: [-0.6]");
+  assert_int_equal(command_run("sweep mine.yaml -j 1 -o correlated"), 0);
+  command_read("correlated/statistics.csv", text);
+  const char *row = strstr(text, "electrode_edge_u_m,m,5,");
+  assert_non_null(row);
+  assert_int_equal(sscanf(row, "electrode_edge_u_m,m,5,%*d,%*f,%lf", &std), 1);
+  assert_int_equal(
+      command_run("run @/examples/frdea-4.yaml -m lumped --study sweep --study uncertainty --set "
+                  "film.thickness='94 um' --set pre_stretch=1.42 --set compute.voltage.to='5 kV' "
+                  "--set compute.uncertainty='{parameters: [{name: film.thickness, std: 0.1 um}, "
+                  "{name: pre_stretch, std: 0.001}], correlations: [-0.6]}' -o bands"),
+      0);
+  command_read("bands/summary.json", text);
+  for (const char *at = strstr(text, key); at != NULL; at = strstr(at + 1, key)) {
+    last = at; // of the highest voltage, behind the value
+  }
+  assert_non_null(last);
+  assert_close(std, strtod(last + strlen(key), NULL), 1 / sqrt(1024), 0);
+}
+
+/* Killed again and again: in the end every case is there, and once. */
 TEST(test_killed)
 {
   char text[700];

@@ -1,10 +1,9 @@
 /* Parts of src/explore on functions in closed form: sequences, quantiles, indices, processes, and a
  * store that is cut off anywhere. */
 #include "base/correlations.h"
-#include "explore/order.h"
+#include "explore/explore_sweep.h"
 #include "explore/plan.h"
 #include "explore/pool.h"
-#include "explore/sample_statistics.h"
 #include "explore/store.h"
 #include "io/sparse_grid.h"
 
@@ -64,22 +63,6 @@ TEST(test_sobol_integral)
   }
   assert_true(fabs(sum / N - 1) < 3e-4);
   free(u);
-}
-
-TEST(test_latin)
-{
-  enum { N = 100, D = 3 };
-  double u[N * D];
-  assert_int_equal(dea_sample_latin(ctx, D, N, 5, u), DEA_OK);
-  for (size_t d = 0; d < D; d++) {
-    int hits[N] = {0};
-    for (size_t i = 0; i < N; i++) {
-      hits[(size_t)(u[i * D + d] * N)]++;
-    }
-    for (size_t i = 0; i < N; i++) {
-      assert_int_equal(hits[i], 1);
-    }
-  }
 }
 
 TEST(test_quantile)

@@ -30,14 +30,16 @@ static dea_status fit(const char *model, const char *parameters, const char *cur
   write_file("fit.yaml", text);
   write_file("design.yaml", GOOD_DESIGN);
   *out = NULL;
-  assert_int_equal(dea_device_file_read(ctx, in_folder("fit.yaml"), file), DEA_OK);
+  void *read;
+  assert_int_equal(dea_fit_head_read(ctx, in_folder("fit.yaml"), &dea_device_form, &read), DEA_OK);
+  *file = read;
   return dea_device_fit_run(ctx, *file, &options, out);
 }
 
 static void end(struct dea_device_file *file, struct dea_device_fit *found)
 {
   dea_device_fit_destroy(ctx, found);
-  dea_device_file_destroy(ctx, file);
+  dea_fit_head_destroy(ctx, file);
 }
 
 /* Capacitances at voltages that stretch nothing (1e-12 of the capacitance): C = k eps. */

@@ -31,7 +31,7 @@ dea_status dea_importer_read(struct dea_context *ctx, const struct dea_importer 
 dea_status dea_table_read(struct dea_context *ctx, const char *file, const char *format,
                           struct dea_table **out);
 
-/* What a column may be by its name, whose words are in table/word_list.h: enum dea_channel_kind or
+/* What a column may be by its name, whose words are in table/words.c: enum dea_channel_kind or
  * one of these, the last of which is of another column, "z std". */
 enum { DEA_GUESS_TIME = -1, DEA_GUESS_NOTHING = -2, DEA_GUESS_UNCERTAINTY = -3 };
 int dea_guess_by_name(const char *name);
