@@ -13,12 +13,6 @@ static const double length = 2;
 static const struct block bar = {{2, 1, 1}, {3, 1, 1}, 2, 2};
 static struct dea_part_material soft; // of modulus mu, Poisson's ratio 0
 
-/* Slides on the three planes through the origin. */
-static int on_planes(const void *self, const double X[3])
-{
-  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
-}
-
 /* Along the bar only, so that it cannot buckle. */
 static int along(const void *self, const double X[3])
 {
@@ -172,18 +166,6 @@ TEST(test_way_that_ends)
   pull_end(solid, grid, way);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   assert_close(reaction(solid, grid), stress(1 + way / length), 1e-7, 0);
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
-}
-
-TEST(test_arguments)
-{
-  static const double none[3] = {0, 0, 0};
-  struct dea_grid *grid = block_grid(ctx, &bar);
-  struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
-  assert_int_equal(dea_solid_prescribe(ctx, solid, grid->node_count, 1, none), DEA_E_ARGUMENT);
-  assert_int_equal(dea_solid_prescribe(ctx, solid, 0, 8, none), DEA_E_ARGUMENT);
-  assert_int_equal(dea_solid_release(ctx, solid, grid->node_count, 1), DEA_E_ARGUMENT);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }

@@ -10,18 +10,12 @@
 #include "solid_fixture.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Units: mu = eps = 1. */
 static struct block strip = {{1, 0.1, 0.01}, {16, 1, 1}, 3, 2};
 static struct dea_grid *grid;
 static struct dea_solid *solid;
 static double *u;
-
-static bool all_active(const void *self, int region, int ply)
-{
-  return true;
-}
 
 static int clamped_in_plane_strain(const void *self, const double X[3])
 {
@@ -32,11 +26,6 @@ static int clamped_in_plane_strain(const void *self, const double X[3])
 /* The second part material is of the same law, and `stiff` times as stiff. */
 static double stiff = 1;
 static int iterations; // of a descent; 0: as many as by default
-
-static int second_half(const void *self, int region, int ply)
-{
-  return region;
-}
 
 static dea_status try(struct dea_context *with)
 {
@@ -55,8 +44,8 @@ static dea_status try(struct dea_context *with)
   const struct dea_solid_options options = {.order_z = strip.order_z,
                                             .part_material_count = 2,
                                             .part_materials = layers,
-                                            .part_material_of = second_half,
-                                            .active = all_active,
+                                            .part_material_of = layer_of_region,
+                                            .active = everywhere,
                                             .held = clamped_in_plane_strain,
                                             .self = &strip,
                                             .settings = &settings};
@@ -163,43 +152,6 @@ TEST(test_held)
   assert_int_equal(dea_solid_transfer_solution(ctx, solid, voltage_V, u, &report, &found), DEA_OK);
   assert_true(found);
   assert_close(pow(middle_z() / h, 2), 4.0 / 3 * (r - 1), 0.01 * r / (r - 1), 0);
-  destroy();
-}
-
-/* Only nodes around the crease move, none that is held or of the stiff half. */
-TEST(test_what_moves)
-{
-  size_t left;
-  stiff = 100;
-  create();
-  bend(0.8);
-  crease(0.25);
-  double *before = malloc(3 * grid->node_count * sizeof *before);
-  assert_non_null(before);
-  memcpy(before, u, 3 * grid->node_count * sizeof *before);
-  assert_int_equal(dea_solid_untangle(ctx, solid, u, &left), DEA_OK);
-  assert_int_equal(left, 0);
-  size_t moved = 0;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    const double *X = grid->X + 3 * n, *a = u + 3 * n, *b = before + 3 * n;
-    bool still = a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-    moved += !still;
-    assert_true(still || (X[0] > 1e-9 && X[0] < 0.499));
-    assert_true(a[1] == b[1]);
-  }
-  assert_true(moved > 0);
-  // where only stiff elements are inverted nothing can be done, and nothing is
-  bend(0.8);
-  crease(0.75);
-  memcpy(before, u, 3 * grid->node_count * sizeof *before);
-  bool found;
-  struct dea_solid_report report = {0};
-  assert_ok(dea_solid_transfer_solution(ctx, solid, critical_V(), u, &report, &found));
-  assert_false(found);
-  assert_close(dea_solid_voltage(solid), 0, 0, 0);
-  assert_close(middle_z(), 0, 0, 0);
-  free(before);
-  stiff = 1;
   destroy();
 }
 

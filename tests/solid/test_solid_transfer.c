@@ -85,25 +85,6 @@ TEST(test_linear)
   }
 }
 
-/* To itself every field goes without loss. */
-TEST(test_itself)
-{
-  struct dea_grid *grid = quarter(2, 2, 3, false);
-  size_t count = 3 * grid->node_count;
-  double *u = calloc(count, sizeof *u), *v = calloc(count, sizeof *v);
-  assert_true(u != NULL && v != NULL);
-  for (size_t i = 0; i < count; i++) {
-    u[i] = 1e-3 * sin(37.0 * (double)i);
-  }
-  assert_int_equal(dea_grid_transfer(ctx, grid, u, grid, v), DEA_OK);
-  for (size_t i = 0; i < count; i++) {
-    assert_close(v[i], u[i], 0, 1e-13);
-  }
-  free(u);
-  free(v);
-  dea_grid_destroy(ctx, grid);
-}
-
 TEST(test_outside)
 {
   struct dea_grid *grid = quarter(2, 2, 3, false), *other = quarter(2, 2, 3, false);
