@@ -149,15 +149,6 @@ TEST(test_nothing_touched)
   tear_down_result();
 }
 
-/* Without the section nothing is computed. */
-TEST(test_nothing_asked)
-{
-  set_up_result(GOOD_DESIGN, NULL, 0);
-  assert_int_equal(dea_study_run(ctx, &spring, NULL, 0, result), DEA_OK);
-  assert_null(dea_result_find(result, "spring", "force"));
-  tear_down_result();
-}
-
 /* A tip goes on from the depth before where the next one is deeper; the numbers are those of a
  * model of each depth's own. */
 TEST(test_deeper)
@@ -195,7 +186,6 @@ TEST(test_deeper)
  * that goes back with the voltage only below 5.2 kV. */
 struct dea_film {
   double end_V;     // no equilibrium beyond
-  double hidden_V;  // none here either, unless it is the next of steps of 0.1 kV
   bool sticks;      // it is not the same where the voltage has fallen
   int solves;       // in this process
   size_t processes; // that the study may take
@@ -214,8 +204,7 @@ static dea_status film_solve(struct dea_context *context, struct dea_model *mode
                              struct dea_load_point *out)
 {
   film.solves++;
-  bool jumps = voltage_V - model->voltage_V > 101;
-  if (voltage_V > film.end_V || (voltage_V == film.hidden_V && jumps)) {
+  if (voltage_V > film.end_V) {
     return dea_fail(context, DEA_E_NO_EQUILIBRIUM, "none at %g V", voltage_V);
   }
   bool fell = voltage_V < model->voltage_V;
@@ -364,20 +353,6 @@ TEST(test_stops)
     tear_down_result();
     dea_context_clear(ctx);
   }
-}
-
-/* Where a state between others is not found, all are computed one after the other. */
-TEST(test_hidden)
-{
-  static const char *const strict[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0000001}", NULL};
-  film = (struct dea_film){.end_V = INFINITY, .hidden_V = 400};
-  assert_int_equal(run_film(strict), DEA_OK);
-  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
-  assert_int_equal(curve->count, 81);
-  for (size_t i = 0; i < 81; i++) {
-    assert_false(dea_load_point_interpolated(&curve->points[i]));
-  }
-  tear_down_result();
 }
 
 static bool interrupted(void *user)
