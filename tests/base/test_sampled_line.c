@@ -230,27 +230,4 @@ TEST(test_jump)
   assert_false(dea_load_point_interpolated(&points[21]));
 }
 
-/* Of the mesh's estimated errors the larger one of both sides; a number without any stays so. */
-TEST(test_mesh_error)
-{
-  begin(8, straight);
-  for (size_t k = 8; k < COUNT; k += 8) {
-    points[k].centre_z_error_m = (double)(k % 24);
-  }
-  assert_int_equal(dea_sampled_line_halve(&line, 1e-9, wanted), 0);
-  dea_sampled_line_fill(&line);
-  assert_close(points[3].centre_z_error_m, 8, 0, 0); // at rest there is none
-  assert_close(points[13].centre_z_error_m, 16, 0, 0);
-  assert_close(points[20].centre_z_error_m, 16, 0, 0);
-}
-
-/* Too few points to hold one back: all are computed. */
-TEST(test_few)
-{
-  begin(32, straight);
-  assert_int_equal(dea_sampled_line_halve(&line, 1, wanted), 2);
-  begin(16, straight);
-  assert_int_equal(dea_sampled_line_halve(&line, 1e-9, wanted), 0);
-}
-
 TESTS(NULL, NULL)

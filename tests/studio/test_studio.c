@@ -454,27 +454,6 @@ TEST(test_tells_events)
   assert_string_equal(wait_end(id), "done");
 }
 
-TEST(test_twenty_clients)
-{
-  enum { CLIENTS = 20 };
-  int listeners[CLIENTS];
-  char text[256];
-  const int length = snprintf(text, sizeof text,
-                              "GET %sevents HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n", secret, port);
-  for (size_t i = 0; i < CLIENTS; i++) {
-    listeners[i] = connect_to();
-    say(listeners[i], text, (size_t)length);
-  }
-  for (size_t i = 0; i < CLIENTS; i++) { // each is told what there is
-    assert_int_equal(recv(listeners[i], text, 15, MSG_WAITALL), 15);
-    assert_memory_equal(text, "HTTP/1.1 200 OK", 15);
-  }
-  assert_int_equal(ask("GET", "state", NULL), 200); // and there is room for questions
-  for (size_t i = 0; i < CLIENTS; i++) {
-    close(listeners[i]);
-  }
-}
-
 /* Waits until a run has kept a file. */
 static void wait_points(const char *results)
 {
