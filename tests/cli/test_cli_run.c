@@ -328,16 +328,6 @@ TEST(test_nothing_to_draw)
   command_expect("compare bare bare --quantity centre_z", 2, "did you mean 'centre_z_m'?");
 }
 
-TEST(test_usage_errors)
-{
-  assert_int_equal(command_run(""), 2);
-  command_expect("rnu x", 2, "did you mean 'run'");
-  command_expect("run", 2, "design file");
-  command_expect("run 0 1 2 3 4 5 6 7 8 9", 2, "too many design files");
-  command_expect("run a.yaml --modle x", 2, "--modle");
-  command_expect("run a.yaml --set thickness", 2, "KEY=VALUE");
-}
-
 /* Sends SIGINT after a delay to a sweep of 9901 points; returns the lines of its table. */
 static size_t interrupt_after(double delay_s)
 {

@@ -132,26 +132,6 @@ TEST(test_labels)
                 "a \\u0026 \\u0022b\\u0022\\u000a\\u003c/script\\u003ex");
 }
 
-TEST(test_axes)
-{
-  const double open[2] = {NAN, NAN}, closed[2] = {0, 8};
-  struct dea_axis axis = dea_axis_create(-3.2, 41, open, false, 7);
-  axis.at_high = 100;
-  double value;
-  assert_true(dea_axis_tic(&axis, 0, &value));
-  assert_close(value, -10, 1e-12, 0);
-  assert_close(axis.high, 50, 1e-12, 0);
-  assert_close(dea_axis_place(&axis, 20), 50, 1e-12, 0);
-  axis = dea_axis_create(0, 3, closed, false, 8);
-  assert_close(axis.high, 8, 0, 0);
-  assert_true(dea_axis_tic(&axis, 8, &value) && !dea_axis_tic(&axis, 9, &value));
-  axis = dea_axis_create(5, 5, open, false, 5); // one value alone still has room around it
-  assert_true(axis.low < 5 && axis.high > 5);
-  axis = dea_axis_create(0.02, 30, open, true, 5);
-  assert_close(axis.low, 0.01, 1e-12, 0);
-  assert_close(axis.high, 100, 1e-12, 0);
-}
-
 // The page ----------------------------------------------------------------------------------------
 
 static char *page;

@@ -9,8 +9,6 @@
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
-#include "message_fixture.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -184,14 +182,6 @@ TEST(test_charges_follow_voltages)
 
 /* ---- a stack of films with electrodes between them ---- */
 
-/* ---- what is refused ---- */
-
-static void unknown_channel(const void *self, int region, int ply, int *top, int *bottom)
-{
-  *top = 2;
-  *bottom = 0;
-}
-
 /* The static response to an AC excitation of the whole, where channels are at voltages of their
  * own, against equilibria on both sides. */
 TEST(test_response_about_own_voltages)
@@ -225,39 +215,6 @@ TEST(test_response_about_own_voltages)
   assert_true(off < 1e-5 * most);
   dea_solid_response_destroy(ctx, response);
   free(slope);
-  strip_destroy(&strip);
-}
-
-static bool no_electrode(const void *self, const double X[3], double *share)
-{
-  *share = X[2] > 0 ? 1 : 0;
-  return true;
-}
-
-TEST(test_refused)
-{
-  struct strip strip = strip_create(false, 2, NULL);
-  const struct dea_part_material film = film_of(h_m);
-  struct dea_solid_options options = {.order_z = 2,
-                                      .part_material_count = 1,
-                                      .part_materials = &film,
-                                      .active = everywhere,
-                                      .channels = unknown_channel,
-                                      .channel_count = 1,
-                                      .held = framed};
-  struct dea_solid *solid;
-  assert_message(dea_solid_create(ctx, strip.grid, &options, &solid), DEA_E_ARGUMENT,
-                 "there is no channel 2: 1 of them");
-  options.channels = two_channels;
-  options.channel_count = 2;
-  options.field = DEA_SOLID_FIELD_COUPLED;
-  options.electrode = no_electrode;
-  assert_message(dea_solid_create(ctx, strip.grid, &options, &solid), DEA_E_UNSUPPORTED,
-                 "a coupled field has one channel");
-  solve_at(&strip, 1e3, 500, 0);
-  double capacitance;
-  assert_int_equal(dea_solid_capacitance(ctx, strip.solid, &capacitance), DEA_OK);
-  assert_true(isnan(capacitance)); // over which voltage?
   strip_destroy(&strip);
 }
 
