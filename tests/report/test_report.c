@@ -7,7 +7,6 @@
 #include "io/results_h5.h"
 #include "job/report_runs.h"
 #include "job/run_folder.h"
-#include "plot/axis.h"
 #include "plot/plot.h"
 #include "plot/plot_svg.h"
 
@@ -50,11 +49,6 @@ static void plain_label(struct dea_text *out, const char *text)
 static void json_label(struct dea_text *out, const char *text)
 {
   dea_html_label(out, text, DEA_LABEL_JSON);
-}
-
-static void base64(struct dea_text *out, const char *text)
-{
-  dea_html_base64(out, text, strlen(text));
 }
 
 static void assert_writes(writer write, const char *text, const char *wanted)
@@ -101,21 +95,6 @@ TEST(test_escaping)
   assert_writes(dea_html_text, "\001\177", "\357\277\275\357\277\275");
   assert_writes(dea_html_text, "\342\200\256", "\357\277\275\357\277\275\357\277\275");
   assert_writes(json_label, "</script>\n\"\302\265", "\\u003c/script\\u003e\\u000a\\u0022\302\265");
-}
-
-TEST(test_base64)
-{
-  // RFC 4648, section 10
-  static const char *const pairs[][2] = {{"", ""},
-                                         {"f", "Zg=="},
-                                         {"fo", "Zm8="},
-                                         {"foo", "Zm9v"},
-                                         {"foob", "Zm9vYg=="},
-                                         {"fooba", "Zm9vYmE="},
-                                         {"foobar", "Zm9vYmFy"}};
-  for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
-    assert_writes(base64, pairs[i][0], pairs[i][1]);
-  }
 }
 
 TEST(test_labels)
