@@ -859,5 +859,4 @@ TEST(test_buckling_of_a_slab)
   end(&at);
 }
 
-#include <stdio.h>
 TESTS(context_set_up, context_tear_down)

@@ -8,8 +8,6 @@
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
-#include <stdlib.h>
-
 /* ---- against the law in three dimensions ---- */
 
 /* P of the film from the material point of a solid, its third column the normal over |F1 x F2|^2;

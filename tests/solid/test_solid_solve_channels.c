@@ -10,7 +10,6 @@
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
 #include <stdlib.h>
-#include <string.h>
 
 static const double h_m = 44e-6, length_m = 4e-3;
 

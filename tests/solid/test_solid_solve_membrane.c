@@ -6,7 +6,6 @@
 #include "model/solid/assembly/solid.h"
 #include "model/solid/element/membrane.h"
 #include "model/solid/equilibrium/load_steps.h"
-#include "prototypes.h"
 #include "quarter_grid.h"
 #include "testing.h"
 

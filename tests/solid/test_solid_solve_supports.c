@@ -5,7 +5,6 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "solid_fixture.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const double mu = 1e5;
@@ -111,37 +110,6 @@ TEST(test_prescribed_in_local_axes)
       assert_close(u[0], 0.5 * step * grid->X[3 * n] / length, 0, 1e-8);
     }
   }
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
-}
-
-/* What was prescribed is released: the bar goes back. A dead load in its place holds as much. */
-TEST(test_release_and_dead_load)
-{
-  struct dea_grid *grid = block_grid(ctx, &bar);
-  struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
-  struct dea_solid_report report;
-  pull_end(solid, grid, 1);
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  double *pulled = calloc(3 * grid->node_count, sizeof *pulled);
-  assert_non_null(pulled);
-  memcpy(pulled, dea_solid_displacement(solid), 3 * grid->node_count * sizeof *pulled);
-  for (size_t n = 0; n < grid->node_count; n++) {
-    if (at_end(grid, n)) {
-      dea_solid_force(solid)[3 * n] = dea_solid_reaction(solid)[3 * n];
-      assert_int_equal(dea_solid_release(ctx, solid, n, 1), DEA_OK);
-    }
-  }
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  for (size_t i = 0; i < 3 * grid->node_count; i++) {
-    assert_close(dea_solid_displacement(solid)[i], pulled[i], 0, 1e-7);
-  }
-  memset(dea_solid_force(solid), 0, 3 * grid->node_count * sizeof(double));
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  for (size_t i = 0; i < 3 * grid->node_count; i++) {
-    assert_close(dea_solid_displacement(solid)[i], 0, 0, 1e-7);
-  }
-  free(pulled);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }
