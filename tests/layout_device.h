@@ -80,6 +80,45 @@ static inline void add_electrode(struct dea_device *device, size_t ply, bool top
       .name = "electrode", .region = region, .ply = ply, .top = top, .channel = channel};
 }
 
+/* A ground and a driven electrode on both sides of a ply. */
+static inline void add_electrodes(struct dea_device *device, size_t ply, size_t region)
+{
+  add_electrode(device, ply, false, region, 0);
+  add_electrode(device, ply, true, region, 1);
+}
+
+/* Components (1: x, 2: y, 4: z) of a region's edge, or of its part within another region, stay. */
+static inline void hold_edge(struct dea_device *device, size_t region, size_t within,
+                             int components)
+{
+  struct dea_layout *l = device->layout;
+  l->supports[l->support_count++] = (struct dea_layout_support){
+      .region = region, .edge = true, .within = within, .components = components};
+}
+
+/* All of a region stays flat, and may become thinner. */
+static inline void hold_flat(struct dea_device *device, size_t region)
+{
+  struct dea_layout *l = device->layout;
+  l->supports[l->support_count++] = (struct dea_layout_support){
+      .region = region, .within = DEA_LAYOUT_NONE, .components = 4, .hinged = true};
+}
+
+static inline void add_point(struct dea_device *device, const char *name, double x_m, double y_m)
+{
+  struct dea_layout *l = device->layout;
+  l->monitors[l->monitor_count++] =
+      (struct dea_layout_monitor){.name = name, .kind = DEA_MONITOR_POINT, .at_m = {{x_m, y_m}}};
+}
+
+/* A monitor of all of the first ply on the first region. */
+static inline void add_film_monitor(struct dea_device *device)
+{
+  struct dea_layout *l = device->layout;
+  l->monitors[l->monitor_count++] =
+      (struct dea_layout_monitor){.name = "film", .kind = DEA_MONITOR_REGION};
+}
+
 /* Annulus of film with a hub that is held and two electrodes (radii 5 and 20 mm, pre-stretch 1.2);
  * a monitor of the hub. */
 static inline struct dea_device *cone_new(void)
@@ -92,10 +131,8 @@ static inline struct dea_device *cone_new(void)
   dea_region_add_circle(add_region(device, "hub"), 0, 0, 5e-3, false, nowhere);
   dea_region_add_circle(add_region(device, "frame"), 0, 0, 20e-3, false, nowhere);
   add_film(device, 0, 1.2, 1.2);
-  add_electrode(device, 0, false, 0, 0);
-  add_electrode(device, 0, true, 0, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 2, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  add_electrodes(device, 0, 0);
+  hold_edge(device, 2, DEA_LAYOUT_NONE, 7);
   l->bodies[l->body_count++] = (struct dea_layout_body){.name = "hub", .region = 1};
   l->monitors[l->monitor_count++] =
       (struct dea_layout_monitor){.name = "hub", .kind = DEA_MONITOR_BODY, .body = 0};
@@ -106,16 +143,12 @@ static inline struct dea_device *cone_new(void)
 static inline struct dea_device *disc_new(double frame_m, double active_m, double stretch)
 {
   struct dea_device *device = device_new();
-  struct dea_layout *l = device->layout;
   dea_region_add_circle(add_region(device, "film"), 0, 0, frame_m, false, nowhere);
   dea_region_add_circle(add_region(device, "active"), 0, 0, active_m, false, nowhere);
   add_film(device, 0, stretch, stretch);
-  add_electrode(device, 0, false, 1, 0);
-  add_electrode(device, 0, true, 1, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{active_m, 0}}};
+  add_electrodes(device, 0, 1);
+  hold_edge(device, 0, DEA_LAYOUT_NONE, 7);
+  add_point(device, "edge", active_m, 0);
   return device;
 }
 
@@ -130,4 +163,14 @@ static inline struct dea_model *layout_model(const struct dea_device *device,
   }
   assert_int_equal(status, DEA_OK);
   return model;
+}
+
+/* What is observed at a voltage. */
+static inline struct dea_observation observed_at(struct dea_model *model, double voltage_V,
+                                                 struct dea_load_point *point)
+{
+  struct dea_observation seen;
+  assert_int_equal(dea_model_find("3d")->solve(ctx, model, voltage_V, point), DEA_OK);
+  assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
+  return seen;
 }

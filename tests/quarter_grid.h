@@ -188,23 +188,6 @@ static inline void quarter_outer_blocks(const struct dea_quarter *q,
   }
 }
 
-static inline dea_status quarter_check(struct dea_context *ctx, const struct dea_quarter *q)
-{
-  bool fibres = q->fibres == 4 || q->fibres == 8;
-  // fibres that meet leave no film between them at the circle a
-  double angle = fibres ? asin(fmin(1, 0.5 * q->fibre_width / q->a)) : 0;
-  if ((!fibres && q->fibres != 0) || !(angle * (q->fibres == 8 ? 2 : 1) < 0.99 * quarter_eighth) ||
-      (fibres && !(q->fibre_width > 0 && q->fibre_thickness > 0 && q->across > 0))) {
-    return dea_fail(ctx, DEA_E_ARGUMENT,
-                    "a mesh of a quarter takes 0, 4 or 8 fibres that do not meet");
-  }
-  if (q->fine < 1 || q->fine + 2 * q->across >= QUARTER_CUTS_MAX) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh takes 1 to %d elements in a row",
-                    QUARTER_CUTS_MAX - 1);
-  }
-  return DEA_OK;
-}
-
 static inline dea_status dea_grid_quarter(struct dea_context *ctx, const struct dea_quarter *q,
                                           struct dea_grid **out)
 {
@@ -215,7 +198,6 @@ static inline dea_status dea_grid_quarter(struct dea_context *ctx, const struct 
   struct quarter_sector sectors[QUARTER_SECTORS_MAX];
   struct quarter_outer_block outer[2 * QUARTER_SECTORS_MAX];
   struct dea_block blocks[INNER_BLOCKS + 2 * QUARTER_SECTORS_MAX];
-  DEA_TRY(ctx, quarter_check(ctx, q));
   double square = quarter_eighth * q->a / (double)q->fine;
   double first = q->edge > 0 && q->edge < square ? q->edge : square;
   size_t rings = quarter_graded_cuts(0.45 * q->a, first, square, ring);
@@ -247,4 +229,21 @@ static inline dea_status dea_grid_quarter(struct dea_context *ctx, const struct 
                                q->membrane ? surface : film, 1 + on_fibres, quarter_film_everywhere,
                                q->membrane ? 0 : -0.5 * q->film_thickness, q->b, out));
   return DEA_OK;
+}
+
+/* Electrodes on a solid film. */
+static inline bool quarter_active(const void *self, int region, int ply)
+{
+  (void)self;
+  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
+}
+
+/* Mirror planes x = 0 and y = 0; a frame of 15 mm holds the edge. */
+static inline int quarter_held(const void *self, const double X[3])
+{
+  (void)self;
+  if (hypot(X[0], X[1]) > 15e-3 * (1 - 1e-9)) {
+    return 1 | 2 | 4;
+  }
+  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
 }

@@ -47,3 +47,37 @@ static inline struct dea_solid *block_solid(struct dea_context *ctx, const struc
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   return solid;
 }
+
+// Ways to fill and hold one -----------------------------------------------------------------------
+
+static inline bool everywhere(const void *self, int region, int ply)
+{
+  return true;
+}
+
+static inline bool first_region(const void *self, int region, int ply)
+{
+  return region == 0;
+}
+
+static inline int layer_of_region(const void *self, int region, int ply)
+{
+  return region;
+}
+
+static inline int layer_of_ply(const void *self, int region, int ply)
+{
+  return ply;
+}
+
+/* Slides on the three planes through the origin. */
+static inline int on_planes(const void *self, const double X[3])
+{
+  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
+}
+
+/* At x = 0. */
+static inline int clamped(const void *self, const double X[3])
+{
+  return X[0] < 1e-9 ? 7 : 0;
+}

@@ -28,7 +28,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 COLUMNS = ["date", "commit", "target", "processor_s", "inputs", "edges", "found"]
 ROUND_S = 300  # by the clock
 PATIENCE = 20  # a target that waits more than it works ends after this many times its share, by the clock
-SMALL, LARGEST = 48, 4096
+SMALL, LARGEST = 6, 4096
 writing = threading.Lock()
 
 

@@ -60,8 +60,8 @@ OWN_TESTS = [
     ("src/fabricate/dxf.c", "fab fab_drawing geometry_drawing"),
     ("src/fabricate/", "fab fab_contour fab_errors fab_layout cli_fab fab_drawing"),
     ("src/study/", "study_compare study_convergence study_force study_loading study_map "
-                   "study_sensitivity study_states study_transient study_uncertainty "
-                   "study_vibration path layout_modes cli_run"),
+                   "study_states study_transient study_uncertainty study_vibration path "
+                   "layout_modes cli_run plane_gradient"),
     ("src/base/", "base units design_errors"),
 ]
 

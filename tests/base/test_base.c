@@ -66,13 +66,6 @@ TEST(test_nearest_name)
   assert_null(dea_nearest_name("vhb", films, 3)); // one of two
 }
 
-TEST(test_text_to_double_ignores_locale)
-{
-  const char *end;
-  assert_close(dea_text_to_double("1.5 mm", &end), 1.5, 0, 0);
-  assert_string_equal(end, " mm");
-}
-
 TEST(test_flat_text)
 {
   char text[] = "a\nb\x1b[1m\x7f \xc2\x9b\xc2\xb5 \xff\x9b.";
@@ -83,21 +76,6 @@ TEST(test_flat_text)
                   "8\xe2\x80\xac\xe2\x81\xa6\xd8\x9c\xe2\x80\x8f\xe2\x80\x90.";
   dea_text_flatten(turned);
   assert_string_equal(turned, "a   8           \xe2\x80\x90.");
-}
-
-TEST(test_text_grows)
-{
-  struct dea_context *ctx;
-  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  struct dea_text text = {.ctx = ctx};
-  assert_string_equal(dea_text_get(&text), "");
-  for (int i = 0; i < 1000; i++) {
-    dea_text_add(&text, "%d,", i % 10);
-  }
-  assert_int_equal(text.length, 2000);
-  assert_int_equal(strlen(dea_text_get(&text)), 2000);
-  dea_text_free(&text);
-  dea_context_destroy(ctx);
 }
 
 struct arena_use {
@@ -132,55 +110,6 @@ static dea_status fill_arena(struct dea_context *ctx)
 TEST(test_arena_gives_and_frees_all)
 {
   assert_int_equal(failing_ends(fill_arena, DEA_OK), 20);
-}
-
-TEST(test_arena_refuses_overflow)
-{
-  struct dea_context *ctx;
-  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  const size_t sizes[] = {3, sizeof(double), SIZE_MAX / 2, SIZE_MAX};
-  for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-    struct dea_arena arena = {.ctx = ctx};
-    assert_null(dea_arena_alloc(&arena, SIZE_MAX / sizes[i], sizes[i]));
-    assert_int_equal(dea_arena_status(&arena), DEA_E_MEMORY);
-    assert_int_equal(dea_context_status(ctx), DEA_E_MEMORY);
-    dea_arena_free(&arena);
-    assert_non_null(dea_arena_alloc(&arena, 0, sizes[i])); // usable again; nothing is something
-    dea_arena_free(&arena);
-  }
-  struct dea_arena never = {0};
-  dea_arena_free(&never);
-  dea_context_destroy(ctx);
-}
-
-/* What a schema prints: of kinds that are known here each with its own keys, of others nothing. */
-TEST(test_schema_prints_kinds)
-{
-  struct dea_context *ctx;
-  static const struct dea_field of_one[] = {{.key = "height", .doc = "of it", .example = "1"}},
-                                of_other[] = {{.key = "slope", .doc = "of it", .example = "1"}};
-  static const struct dea_record one = {"one", "the first", of_one, 1},
-                                 other = {"other", "the second", of_other, 1};
-  static const struct dea_record *const kinds[] = {&one, &other, NULL};
-  static const struct dea_field fields[] = {
-      {.key = "plain", .doc = "has none", .example = "1"},
-      {.key = "shape", .kind = DEA_FIELD_SECTION, .doc = "of two kinds", .kinds = kinds},
-      {.key = "away",
-       .kind = DEA_FIELD_SECTION,
-       .doc = "listed elsewhere",
-       .kinds = kinds,
-       .kinds_elsewhere = true}};
-  static const struct dea_record all = {"all", "all of it", fields, 3};
-  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  struct dea_text out = {.ctx = ctx};
-  dea_schema_print_text(&all, &out);
-  const char *text = dea_text_get(&out);
-  assert_non_null(strstr(text, "shape(one).height"));
-  assert_non_null(strstr(text, "shape(other).slope"));
-  assert_null(strstr(text, "away(one)"));
-  assert_non_null(strstr(text, "plain"));
-  dea_text_free(&out);
-  dea_context_destroy(ctx);
 }
 
 /* A file is in the way until it may be replaced; a folder stays. */

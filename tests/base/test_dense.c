@@ -73,14 +73,4 @@ TEST(test_pivots_of_two_rows)
   assert_int_equal(negative, 0);
 }
 
-TEST(test_what_cannot_be_solved)
-{
-  static double big[(DEA_DENSE_MAX + 1) * (DEA_DENSE_MAX + 1)], b[DEA_DENSE_MAX + 1];
-  double singular[4] = {1, 2, 2, 4}, right[2] = {1, 1};
-  int negative;
-  assert_int_equal(dea_dense_solve(2, singular, right), DEA_E_NOT_CONVERGED);
-  assert_int_equal(dea_dense_solve(DEA_DENSE_MAX + 1, big, b), DEA_E_ARGUMENT);
-  assert_int_equal(dea_dense_negative(DEA_DENSE_MAX + 1, big, &negative), DEA_E_ARGUMENT);
-}
-
 TESTS(NULL, NULL)

@@ -67,15 +67,9 @@ TEST(test_every_bad_file_has_its_exit_code)
        "--set pre_stretch: error: pre_stretch must be at least 1, not '0.9'"},
       {"check @/examples/frdea-4.yaml --set 'compute.models=[lumped, FEM]'", 3,
        "--set compute.models: error: there is no model 'FEM' in this version; there are: lumped"},
-      {"check @/examples/frdea-4.yaml --set 'compute.models=[lumped, lumped]'", 3,
-       "the model 'lumped' stands twice in the list"},
-      {"run @/examples/frdea-4.yaml -m lumped -m lumped", 2, "--model lumped is given twice"},
       {"check coupled.yaml", 3, "coupled.yaml:7:18: error: model 3d: a coupled field needs a"},
-      {"run coupled.yaml --json", 3, "coupled.yaml:7:18: error: model 3d: a coupled field needs a"},
       {"check answer.yaml", 3,
        "answer.yaml:7:18: error: the study 'frequency' needs the field V/h"},
-      {"run answer.yaml --json", 3,
-       "answer.yaml:7:18: error: the study 'frequency' needs the field"},
       {"check turned.yaml", 3, "turned.yaml:2:18: error: model 3d does not support a direction"},
       {"run turned.yaml -m axisymmetric --json", 3, "turned.yaml:2:18: error: model axisymmetric"},
       {"check tab.yaml", 3, "tab.yaml:3:1: error: a tab stands here; YAML indents with spaces"},
@@ -85,12 +79,9 @@ TEST(test_every_bad_file_has_its_exit_code)
       {"optimize x", 2, "'optimize' is not a command; did you mean 'optimise'?"},
       {"run @/examples/fit/silicone.yaml", 3, "this is a fit, not a design: it is for 'dea fit'"},
       {"run @/examples/explore/grid.yaml", 3, "this is a file of many designs, not a design"},
-      {"check @/data/materials/pet.yaml", 3, "this is a material, not a design"},
       {"optimise @/examples/frdea-4.yaml", 3,
        "this is a design, not a file of many designs: it is for 'dea run'"},
       {"fit @/examples/frdea-4.yaml", 3, "this is a design, not a fit: it is for 'dea run'"},
-      {"fit @/examples/explore/spread.yaml", 3, "it is for 'dea sweep' or 'dea optimise'"},
-      {"sweep @/examples/fit/device.yaml", 3, "this is a fit, not a file of many designs"},
   };
   write_bad_files();
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -100,19 +91,6 @@ TEST(test_every_bad_file_has_its_exit_code)
     }
     assert_contains(command_err, bad[i].part);
   }
-}
-
-/* Under mpirun a command that computes in one process would wait for the others without end. */
-/* Before anything is computed. */
-TEST(test_what_cannot_be_uncertain)
-{
-  command_expect("check @/examples/frdea-4.yaml --set 'compute.uncertainty={parameters: "
-                 "[{name: film.thicknes, std: 2 um}]}'",
-                 3, "'film.thicknes' is no key of the design; did you mean 'film.thickness'?");
-  command_expect("run @/examples/frdea-4.yaml -m lumped --set 'compute.uncertainty={parameters: "
-                 "[{name: film.thickness, std: 2 kV}]}'",
-                 3, "std: '2 kV' is a voltage, but a length is due");
-  assert_null(strstr(command_err, "sweep"));
 }
 
 /* A study that none of the design's own models knows is left out of a run, and check says so where
@@ -158,6 +136,7 @@ TEST(test_empty_value)
   command_expect("run @/examples/frdea-4.yaml --output=", 2, "'--output' has an empty value");
 }
 
+/* Under mpirun a command that computes in one process would wait for the others without end. */
 TEST(test_ranks_are_for_run_alone)
 {
   command_before = "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0";
@@ -234,12 +213,6 @@ TEST(test_quiet_keeps_the_result)
   assert_null(strstr(command_out, "results:"));
   assert_null(strstr(command_err, "note:"));
   assert_null(strstr(command_err, "lumped sweep"));
-}
-
-TEST(test_check_shows_the_band_of_the_breakdown_field)
-{
-  command_prints("check @/examples/frdea-4.yaml", 0,
-                 "E_b 80 V/um (80 to 100\n                  by source)");
 }
 
 static json_t *run_json(const char *arguments, int code)
@@ -372,26 +345,6 @@ TEST(test_what_run_refuses)
       }
     }
   }
-}
-
-/* What only a disc has is refused, not passed over. */
-TEST(test_keys_of_a_disc)
-{
-  static const char cone[] = "@/examples/devices/cone-mass.yaml --json --set compute.";
-  static const char *const keys[][3] = {
-      {"solid.field", "coupled", "a coupled field knows no rigid bodies"},
-      {"solid.tip_refinement", "2", "compute.solid.tip_refinement is of a disc in a frame"},
-      {"path.max_stretch", "2", "compute.path.max_stretch is of a disc in a frame"}};
-  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
-    char arguments[200], message[200];
-    snprintf(message, sizeof message, "--set compute.%s: error: model 3d: %s", keys[i][0],
-             keys[i][2]);
-    snprintf(arguments, sizeof arguments, "check %s%s=%s", cone, keys[i][0], keys[i][1]);
-    command_expect(arguments, 3, message);
-    snprintf(arguments, sizeof arguments, "run %s%s=%s", cone, keys[i][0], keys[i][1]);
-    command_expect(arguments, 3, message);
-  }
-  command_expect("check @/examples/devices/cone-mass.yaml --set compute.solid.path=yes", 0, "");
 }
 
 /* A module that this build has, but not its folders, is no matter of packages. */

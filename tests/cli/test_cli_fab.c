@@ -130,30 +130,6 @@ TEST(test_hostile_names)
   }
 }
 
-/* Names of design files that are not UTF-8, or are cut inside of a letter, are no reason not to
- * draw.
- */
-TEST(test_names_in_drawings)
-{
-  static const char *const names[] = {"lat\351in.yaml",
-                                      "x\303\251\303\251\303\251\303\251\303\251\303\251\303\251"
-                                      "\303\251\303\251\303\251\303\251\303\251\303"
-                                      "\251\303\251\303\251\303\251\303\251\303\251\303\251\303\251"
-                                      "\303\251\303\251\303\251\303\251\303\251\303\251"
-                                      "\303\251\303\251\303\251\303\251\303\251\303\251\303\251\303"
-                                      "\251\303\251\303\251\303\251\303\251\303\251"
-                                      "\303\251\303\251\303\251.yaml"};
-  for (size_t i = 0; i < 2; i++) {
-    command_write(names[i], "dea: 1\n"
-                            "film: {material: elastosil-2030, thickness: 100 um}\n"
-                            "pre_stretch: 1.5\nframe: {inner_diameter: 30 mm}\n"
-                            "electrodes: {diameter: 5 mm unstretched}\n");
-    char command[300];
-    snprintf(command, sizeof command, "fab '%s' -o names --force", names[i]);
-    assert_int_equal(command_run(command), 0);
-  }
-}
-
 TEST(test_drawing_only)
 {
   assert_int_equal(command_run("fab " STILL "--drawing -o only"), 0);

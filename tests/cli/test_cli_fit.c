@@ -85,20 +85,6 @@ TEST(test_bad_data)
          "2 of 5 rows, at stretches 1.05 to 1.1, carry no force: the strip is slack there");
 }
 
-/* A frame's file with a stress and a force. */
-TEST(test_stress_and_force)
-{
-  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
-                             "  - {name: s, kind: uniaxial, file: strip.csv, section: 10 mm^2}\n");
-  command_write("strip.csv", "stretch,stress (kPa),force (N)\n1.1,27,0.27\n1.4,89,0.893\n");
-  command_expect("fit mine.yaml --force", 0, "");
-  assert_null(strstr(command_err, "off the stress"));
-  command_write("strip.csv", "stretch,stress (kPa),force (N)\n1.1,27,0.25\n1.4,89,0.84\n");
-  command_expect("fit mine.yaml --force", 0,
-                 "mine.yaml:5:57: warning: the force over the section is off the stress by up to 5 "
-                 "kPa (5.62 % of the largest): the stress counts");
-}
-
 TEST(test_names_and_files)
 {
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [ogden-3]\ntests:\n"
@@ -181,44 +167,6 @@ TEST(test_keys_that_differ)
     command_write("mine.yaml", text);
     command_write("strip.csv", cases[k].csv);
     command_expect("fit mine.yaml --force", cases[k].code, cases[k].message);
-  }
-}
-
-/* What "dea fit" prints of a parameter. */
-static void read_parameter(const char *name, double *value, double *std)
-{
-  const char *at = strstr(command_out, name);
-  assert_non_null(at);
-  assert_int_equal(sscanf(at + strlen(name), "%lf +- %lf", value, std), 2);
-}
-
-/* mu = 100 kPa and noise of 0.02 kPa, little stretched, so that c2 is hardly known: without an
- * uncertainty the scatter is found to be that noise, and a prior weighs as it does with it. One
- * that is far narrower than what the rows know keeps its own uncertainty. */
-TEST(test_prior_without_uncertainty)
-{
-  static const char *const priors[] = {"-8 kPa, prior_std: 5 kPa", "0.03 kPa, prior_std: 0.01 kPa"};
-  command_write("strip.csv",
-                "stretch,stress (kPa)\n1.01,2.972\n1.02,5.898\n1.03,8.745\n1.04,11.566\n"
-                "1.05,14.296\n1.06,17.004\n1.07,19.669\n1.08,22.244\n1.09,24.824\n1.1,27.345\n"
-                "1.11,29.877\n1.12,32.279\n1.13,34.698\n1.14,37.066\n1.15,39.380\n1.16,41.653\n"
-                "1.17,43.968\n1.18,46.173\n1.19,48.398\n");
-  for (int k = 0; k < 2; k++) {
-    double value[2], std[2];
-    for (int known = 0; known < 2; known++) {
-      char text[400];
-      snprintf(text, sizeof text,
-               "dea_fit: 1\nname: mine\nlaws: [yeoh]\nparameters:\n  - {name: c2, prior: %s}\n"
-               "  - {name: c3, start: 0 kPa, fixed: yes}\n"
-               "tests: [{name: strip, kind: uniaxial, file: strip.csv%s}]\n",
-               priors[k], known ? ", uncertainty_absolute: 0.017 kPa" : "");
-      command_write("mine.yaml", text);
-      assert_int_equal(command_run("fit mine.yaml --force"), 0);
-      read_parameter("c2", &value[known], &std[known]);
-    }
-    assert_true(fabs(value[0] - value[1]) < 0.05 * std[1]);
-    assert_true(fabs(std[0] / std[1] - 1) < 0.05);
-    assert_true(k == 0 || fabs(std[1] / 0.01 - 1) < 0.05);
   }
 }
 

@@ -96,20 +96,6 @@ TEST(test_curves)
   expect("lumped", free_one, "name: s, file: z.csv", 3, "has no quantity beside the voltage");
 }
 
-/* A film driven below 0 is fitted as one driven above it. */
-TEST(test_negative_voltages)
-{
-  static char above[COMMAND_TEXT_MAX];
-  static const char free_one[] = "{name: film.thickness}";
-  command_write("v.csv", "V (kV),capacitance (pF)\n1,24.1\n2,24.2\n3,24.8\n");
-  expect("lumped", free_one, "name: s, file: v.csv, uncertainty: 1 %", 0, "");
-  snprintf(above, sizeof above, "%s", command_out);
-  command_write("v.csv", "V (kV),capacitance (pF)\n-1,24.1\n-2,24.2\n-3,24.8\n");
-  expect("lumped", free_one, "name: s, file: v.csv, uncertainty: 1 %", 0,
-         "v.csv: note: voltages below 0 stand at their size");
-  assert_string_equal(command_out, above);
-}
-
 /* The example of docs/fit.md, its files, a folder of dea reduce, and the keys of that page. */
 /* Number in that column of a CSV line, from 0. */
 static double field_of(const char *line, int column)

@@ -208,26 +208,6 @@ TEST(test_summary)
                  "360 degrees");
 }
 
-/* The mesh that is written has the size that a run tells of it. */
-TEST(test_size_is_that_of_a_run)
-{
-  static const char *const designs[] = {"@/examples/frdea-4.yaml",
-                                        "@/examples/devices/two-electrodes.yaml"};
-  for (size_t i = 0; i < 2; i++) {
-    char arguments[300], size[100];
-    unsigned long long elements, unknowns;
-    snprintf(arguments, sizeof arguments, "mesh %s", designs[i]);
-    assert_int_equal(command_run(arguments), 0);
-    assert_int_equal(sscanf(strstr(command_out, "\nelements ") + 10, "%llu", &elements), 1);
-    assert_int_equal(sscanf(strstr(command_out, "\nunknowns ") + 10, "%llu", &unknowns), 1);
-    snprintf(size, sizeof size, "model 3d: %llu elements, %llu unknowns", elements, unknowns);
-    snprintf(arguments, sizeof arguments,
-             "run %s -m 3d --set 'compute.voltage={values: [1 kV]}' --no-figures -o %zu.run",
-             designs[i], i);
-    command_expect(arguments, 0, size);
-  }
-}
-
 TEST(test_what_goes_wrong)
 {
   assert_int_equal(command_run("mesh"), 2);

@@ -55,17 +55,6 @@ TEST(test_plain_disc_json)
   json_decref(root);
 }
 
-TEST(test_figure_2_json)
-{
-  json_t *root = summary("run @/examples/paper/fig02.yaml --model lumped --json");
-  assert_close(number(point_at(root, 4e3), "electrode_stretch"), 1.07611, 0, 5e-6);
-  assert_close(number(point_at(root, 8e3), "electrode_stretch"), 1.32266, 0, 5e-6);
-  assert_close(number(point_at(root, 6e3), "fibre_tip_z_m"), 4.15e-3, 0, 5e-6);
-  assert_close(number(point_at(root, 6e3), "centre_z_m"), 4.15e-3, 0, 5e-6);
-  assert_true(number(point_at(root, 6e3), "force_N") > 0);
-  json_decref(root);
-}
-
 /* Two pulses at two voltages: cycles, creep and balance of energy are in the summary, points in the
  * table, curves in the figures. */
 TEST(test_in_time)
@@ -98,18 +87,6 @@ TEST(test_in_time)
   assert_true(highest_kV > 8.1);
   command_read("in-time/lumped_transient.csv", command_out);
   assert_contains(command_out, "time (s),source V (kV)");
-}
-
-TEST(test_set_overrides_the_design)
-{
-  json_t *a = summary("run @/examples/plain-disc.yaml --model lumped --json");
-  json_t *b = summary("run @/examples/plain-disc.yaml --model lumped --json "
-                      "--set film.thickness='200 um' --set 'compute.voltage={values: [10 kV]}'");
-  assert_int_equal(json_array_size(json_object_get(b, "points")), 1);
-  assert_close(number(point_at(a, 5e3), "electrode_stretch"),
-               number(point_at(b, 1e4), "electrode_stretch"), 1e-9, 0);
-  json_decref(a);
-  json_decref(b);
 }
 
 TEST(test_run_folder)
@@ -180,21 +157,6 @@ TEST(test_failed_run_leaves_nothing)
     assert_int_equal(is_there("short/axisymmetric_sweep.csv"), i > 0);
     assert_int_equal(is_there("short/results.h5"), i > 0);
   }
-}
-
-/* The electrode's stretch triples, far beyond 1.5: events up there are reported all the same. */
-TEST(test_path_reaches_as_far_as_the_sweep)
-{
-  assert_int_equal(
-      command_run("run @/examples/plain-disc.yaml --model lumped --no-figures -o vhb"
-                  " --set film='{material: vhb-4910, thickness: 1 mm}' --set pre_stretch=3"
-                  " --set compute.voltage='{to: 8 kV, step: 0.1 kV}'"),
-      0);
-  assert_contains(command_out, "\n    8.000   3."); // last row
-  assert_contains(command_out, "  not trusted: slack locking breakdown\n");
-  assert_contains(command_err, "model lumped: valid and below breakdown up to ",
-                  "the film's law is near its locking stretch");
-  assert_contains(command_out, ": the film goes slack\n", "reaches the film's breakdown field, ");
 }
 
 static const char soft_disc[] = "dea: 1\n"
@@ -313,91 +275,6 @@ TEST(test_several_designs)
   command_expect("run @/examples/plain-disc.yaml --study sweeep", 2, "did you mean 'sweep'?");
 }
 
-/* At rest alone there is no range of voltages, and figures all the same. */
-TEST(test_figures_at_rest)
-{
-  command_expect("run @/examples/plain-disc.yaml -m lumped --study sweep -o rest --set "
-                 "'compute.voltage={values: [0 kV]}'",
-                 0, "");
-  static char script[COMMAND_TEXT_MAX];
-  command_read("rest/figures/stretch.gp", script);
-  assert_contains(script, "set xrange [0:1]\n");
-  command_expect("run @/examples/plain-disc.yaml -m axisymmetric -o rest --force --set "
-                 "'compute.voltage={values: [0 kV]}'",
-                 0, "");
-}
-
-/* What is wrong with another design file is told of that file, not of the option it stands for. */
-TEST(test_errors_of_several_designs)
-{
-  static const struct {
-    const char *files, *place, *words;
-  } bad[] = {
-      {"not-there.yaml", "dea: error: cannot open ", "/not-there.yaml'"},
-      {"@/examples/devices/cone-mass.yaml",
-       "/cone-mass.yaml: error: ", "this needs a disc in a round frame"},
-      {"@/examples/frdea-8.yaml frdea-8.yaml", "/frdea-8.yaml: error: ", "'frdea-8' stands twice"},
-      {"a-name-of-more-than-sixty-three-characters-is-none-for-a-design-file.yaml", "/a-name-of-",
-       "at most 63"},
-  };
-  const char *const long_name = bad[3].files;
-  command_write("frdea-8.yaml", "dea: 1\n");
-  command_write(long_name, "dea: 1\n");
-  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-    char arguments[200];
-    snprintf(arguments, sizeof arguments, "run @/examples/plain-disc.yaml %s --json", bad[i].files);
-    command_expect(arguments, 3, bad[i].words);
-    assert_contains(command_err, bad[i].place);
-    assert_null(strstr(command_err, "compute.compare"));
-  }
-}
-
-/* A path that was asked for alone has no table of a sweep. */
-TEST(test_path_alone)
-{
-  assert_int_equal(
-      command_run("run @/examples/plain-disc.yaml -m lumped --study path --no-figures -o path"), 0);
-  assert_contains(command_out, "\nlumped\n  path of ", "electrode stretch ");
-  assert_null(strstr(command_out, "margin   tension"));
-  command_expect("run @/examples/plain-disc.yaml -m lumped --no-figures -o swept", 0,
-                 "lumped sweep 116/116\n");
-  assert_contains(command_out, "margin   tension");
-}
-
-/* The operating map is printed by a few rows and is in CSV with all; the folder has no figures of
- * it, and none are said to be there. */
-TEST(test_operating_map)
-{
-  command_prints("run @/examples/plain-disc.yaml -m lumped --study operating-map "
-                 "-o map",
-                 0, "lumped: operating map\n  highest voltage 11.5 kV, end 17.25 kV");
-  assert_contains(command_out, "\n  pre-stretch  slack above (kV)  breakdown above (kV)\n"
-                               "            1                 0 ");
-  assert_contains(command_out, "\n         2.55 "); // the last of 33
-  assert_null(strstr(command_out, "1.0484"));       // the second
-  assert_contains(command_out, "  and 24 more (summary.json)\n",
-                  "results: map (summary.json, results.h5, CSV, figures/)\n");
-  command_read("map/lumped_operating-map_pre_stretch.csv", command_out);
-  assert_contains(command_out,
-                  "pre-stretch,slack above (kV),breakdown above (kV),pull-in (kV),"
-                  "level 1 (kV),level 2 (kV),",
-                  "\n1.0484375,");
-  command_read("map/lumped_operating-map_film_thickness.csv", command_out);
-  assert_contains(command_out, "film thickness (um),slack above (kV),");
-  command_read("map/figures/map_film_thickness.svg", command_out);
-  assert_contains(command_out, "breakdown above");
-}
-
-TEST(test_no_figures)
-{
-  char path[600];
-  assert_int_equal(
-      command_run("run @/examples/plain-disc.yaml -m lumped --study sensitivity -o none"), 0);
-  assert_contains(command_out, "results: none (summary.json, results.h5, CSV)\n");
-  snprintf(path, sizeof path, "%s/none/figures", command_folder);
-  assert_int_not_equal(access(path, F_OK), 0);
-}
-
 /* A study or a device that none of the models knows is an error before anything is made. */
 TEST(test_models_that_cannot)
 {
@@ -449,26 +326,6 @@ TEST(test_nothing_to_draw)
   command_expect("compare bare bare --quantity foo", 2,
                  "'foo' is not a quantity; there are voltage_V");
   command_expect("compare bare bare --quantity centre_z", 2, "did you mean 'centre_z_m'?");
-}
-
-TEST(test_unknown_model)
-{
-  command_expect("run @/examples/plain-disc.yaml --model lumpd --json", 2, "lumped, axisymmetric");
-}
-
-TEST(test_usage_errors)
-{
-  assert_int_equal(command_run(""), 2);
-  command_expect("rnu x", 2, "did you mean 'run'");
-  command_expect("run", 2, "design file");
-  command_expect("run 0 1 2 3 4 5 6 7 8 9", 2, "too many design files");
-  command_expect("run a.yaml --modle x", 2, "--modle");
-  command_expect("run a.yaml --set thickness", 2, "KEY=VALUE");
-}
-
-TEST(test_missing_file)
-{
-  command_expect("run nowhere.yaml", 5, "nowhere.yaml");
 }
 
 /* Sends SIGINT after a delay to a sweep of 9901 points; returns the lines of its table. */
@@ -545,18 +402,6 @@ TEST(test_lost_output)
     command_read("err.txt", command_err);
     assert_contains(command_err, "standard output");
   }
-}
-
-/* What --json writes to a standard output that is closed is lost: an error. */
-TEST(test_closed_output)
-{
-  char text[2048];
-  snprintf(text, sizeof text, "'%s' schema --json >&- 2>'%s/err.txt'", DEA_COMMAND, command_folder);
-  int status = system(text);
-  assert_true(WIFEXITED(status));
-  assert_int_equal(WEXITSTATUS(status), 5);
-  command_read("err.txt", command_err);
-  assert_contains(command_err, "standard output is closed");
 }
 
 /* Figures are not removed and written behind a link, whatever --force says. */

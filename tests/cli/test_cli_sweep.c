@@ -168,39 +168,6 @@ TEST(test_another_material)
   }
 }
 
-/* So is what no list of keys says: the direction of its fibres, and the voltages of the design, up
- * to four times of which a critical voltage is looked for. */
-TEST(test_another_design)
-{
-  static const struct {
-    const char *angle, *highest, *state;
-  } designs[] = {{"0 degree", "3 kV", "stretched"},
-                 {"80 degree", "3 kV", "stretched"},
-                 {"80 degree", "9 kV", "stretched"},
-                 {"80 degree", "9 kV", "unstretched"}};
-  command_write("other.yaml", "dea_explore: 1\nname: own\ndesign: own.yaml\n"
-                              "model: lumped\nvoltages: [1 kV]\n"
-                              "quantities: [min_tension_N_per_m, pull_in_voltage_V]\n"
-                              "variables: [{name: film.thickness, values: [100 um]}]\n");
-  for (size_t i = 0; i < sizeof designs / sizeof designs[0]; i++) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             "dea: 1\nfilm: {material: mine, thickness: 100 um}\npre_stretch: 1.2\n"
-             "frame: {inner_diameter: 40 mm}\nelectrodes: {diameter: 10 mm %s}\n"
-             "compute: {models: [lumped], voltage: {values: [%s]}}\n"
-             "materials:\n  - name: mine\n    title: mine\n    kind: elastomer\n    laws:\n"
-             "      - {id: a, law: holzapfel-gasser-ogden, source: me,\n"
-             "         parameters: {mu: 200 kPa, k1: 100 kPa}, fibre_angle: %s}\n"
-             "    permittivity:\n      - {id: a, at_rest: 2.8, source: me}\n",
-             designs[i].state, designs[i].highest, designs[i].angle);
-    command_write("own.yaml", text);
-    if (i > 0) {
-      command_expect("sweep other.yaml", 5, "another question");
-    }
-    assert_int_equal(command_run("sweep other.yaml --force"), 0);
-  }
-}
-
 /* A search gives its variables ranges, of which a sweep knows no grid. */
 TEST(test_sweep_of_a_search)
 {
@@ -351,36 +318,6 @@ TEST(test_sparse_grid)
   assert_contains(command_out, "designs: 29 of 29 are there, 16 of them");
 }
 
-/* The spread of samples with correlations is the band that dea run makes of the same, to what the
- * sampling leaves (no more than plain random samples: 1 / sqrt(N)). */
-TEST(test_correlated)
-{
-  static char text[COMMAND_TEXT_MAX];
-  static const char key[] = "\"electrode_edge_u_m\": ";
-  const char *last = NULL;
-  double std;
-  write_file("{name: film.thickness, distribution: normal, mean: 94 um, std: 0.1 um}, "
-             "{name: pre_stretch, distribution: normal, mean: 1.42, std: 0.001}",
-             "plan: sobol\nsamples: 1024\ncorrelations: [-0.6]");
-  assert_int_equal(command_run("sweep mine.yaml -j 1 -o correlated"), 0);
-  command_read("correlated/statistics.csv", text);
-  const char *row = strstr(text, "electrode_edge_u_m,m,5,");
-  assert_non_null(row);
-  assert_int_equal(sscanf(row, "electrode_edge_u_m,m,5,%*d,%*f,%lf", &std), 1);
-  assert_int_equal(
-      command_run("run @/examples/frdea-4.yaml -m lumped --study sweep --study uncertainty --set "
-                  "film.thickness='94 um' --set pre_stretch=1.42 --set compute.voltage.to='5 kV' "
-                  "--set compute.uncertainty='{parameters: [{name: film.thickness, std: 0.1 um}, "
-                  "{name: pre_stretch, std: 0.001}], correlations: [-0.6]}' -o bands"),
-      0);
-  command_read("bands/summary.json", text);
-  for (const char *at = strstr(text, key); at != NULL; at = strstr(at + 1, key)) {
-    last = at; // of the highest voltage, behind the value
-  }
-  assert_non_null(last);
-  assert_close(std, strtod(last + strlen(key), NULL), 1 / sqrt(1024), 0);
-}
-
 /* Killed again and again: in the end every case is there, and once. */
 TEST(test_killed)
 {
@@ -414,72 +351,6 @@ TEST(test_interrupted)
   const int kept = lines_with("early/part-1-of-1.csv", "\n");
   assert_true(kept < 200001);
   assert_int_equal(lines_with("early/cases.csv", "\n"), kept); // each has one line for its head
-}
-
-/* The best design, and how many stand in the part of a search; none twice. */
-static int read_search(const char *folder, double *best_m)
-{
-  static char bytes[COMMAND_TEXT_MAX];
-  char name[64], variables[4000][48];
-  int count = 0;
-  snprintf(name, sizeof name, "%s/part-1-of-1.csv", folder);
-  command_read(name, bytes);
-  for (char *line = strchr(bytes, '\n') + 1; *line != '\0'; line = strchr(line, '\n') + 1) {
-    assert_in_range(count, 0, 3999);
-    const char *at = line;
-    for (int comma = 0; comma < 4; comma++) { // number, id, time, reason
-      at = strchr(at, ',') + 1;
-    }
-    assert_int_equal(sscanf(at, "%47[^,],", variables[count]), 1);
-    assert_non_null(strchr(line, '\n')); // whole
-    for (int i = 0; i < count; i++) {
-      assert_string_not_equal(variables[i], variables[count]);
-    }
-    count++;
-  }
-  if (best_m != NULL) {
-    snprintf(name, sizeof name, "%s/best.yaml", folder);
-    command_read(name, bytes);
-    assert_int_equal(sscanf(strstr(bytes, "electrode_edge_u_m = "), "%*s = %lf", best_m), 1);
-  }
-  return count;
-}
-
-/* Ctrl-C upon a search, on the command and its processes, once it has kept a few designs more: what
- * it has made stays, and in the end is what one search makes, none of it twice. */
-TEST(test_interrupted_search)
-{
-  skip_sanitized();
-  static const int more[] = {1, 20, 1, 100, 2};
-  double wanted_m, best_m;
-  char text[2000];
-  int kept = 0;
-  write_file("{name: film.thickness, low: 80 um, high: 300 um, start: 200 um}",
-             "objectives: [{quantity: electrode_edge_u_m}]\nstarts: 40\nevaluations: "
-             "4000\ntolerance: 1e-10\n"
-             "limits: [{quantity: breakdown_margin, above: 0.1}]");
-  assert_int_equal(command_run("optimise mine.yaml -j 2 -q -o whole"), 0);
-  const int all = read_search("whole", &wanted_m);
-
-  for (size_t i = 0; i < sizeof more / sizeof more[0]; i++) {
-    snprintf(
-        text, sizeof text,
-        "cd '%s'; setsid '%s' optimise mine.yaml -j 2 -q -o stopped >out.txt 2>err.txt & pid=$!; "
-        "cd '%s'; until [ $(cat stopped/part* 2>/dev/null | wc -l) -gt %d ] || ! kill -0 $pid; "
-        "do :; done; "
-        "kill -INT -$pid; wait $pid",
-        command_folder, DEA_COMMAND, command_folder, kept + more[i]);
-    const int status = system(text);
-    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
-    const int now = read_search("stopped", NULL);
-    assert_in_range(now, kept + more[i], all - 1);
-    kept = now;
-  }
-  assert_int_equal(command_run("optimise mine.yaml -j 2 -o stopped"), 0);
-  snprintf(text, sizeof text, "designs: %d, %d of them computed before", all, kept);
-  assert_contains(command_out, text);
-  assert_int_equal(read_search("stopped", &best_m), all);
-  assert_close(best_m, wanted_m, 0, 0);
 }
 
 /* A search as a user runs it; docs/explore.md shows it. */

@@ -119,25 +119,6 @@ TEST(test_samples)
   assert_close(sampled_std(), banded_std(), random, 0);
 }
 
-/* A variable of the file that was fitted is cut at its bounds, and its row stays where it is. */
-TEST(test_cut)
-{
-  static char text[COMMAND_TEXT_MAX];
-  double least = INFINITY, most = -INFINITY, t;
-  write_file("variables: [{name: pre_stretch, low: 1.4195, high: 1.4205}]\n"
-             "from_fit: device.fit/fit.json\nplan: random\nsamples: 200");
-  command_expect("sweep mine.yaml -j 1 --force", 0, "");
-  command_read("mine.sweep/cases.csv", text);
-  assert_contains(text, "case,id,pre_stretch (1),film.thickness (m),fibres.overlap (m),");
-  for (const char *at = strchr(text, '\n'); at != NULL && at[1] != '\0';
-       at = strchr(at + 1, '\n')) {
-    assert_int_equal(sscanf(at + 1, "%*d,%*[^,],%lf", &t), 1);
-    least = fmin(least, t);
-    most = fmax(most, t);
-  }
-  assert_true(least >= 1.4195 && least < 1.4196 && most <= 1.4205 && most > 1.4204);
-}
-
 /* A search stands for each design by the fit's values, scattered, and one of them as they are. */
 TEST(test_search)
 {

@@ -90,58 +90,6 @@ TEST(test_neighbours)
   }
 }
 
-/* A search by gradients of model 3d. */
-static void optimise(const char *file)
-{
-  char line[100];
-  snprintf(line, sizeof line, "optimise %s -j 1 -q", file);
-  run_solid(line);
-  assert_contains(command_out, "gradients: of the model\n");
-}
-
-/* A device made of plies: by a thickness and by a shape with the model's gradients. */
-TEST(test_parts)
-{
-  command_write("parts.yaml",
-                "dea_explore: 1\nname: parts\ndesign: " DEA_SOURCE_DIR
-                "/examples/devices/diaphragm.yaml\nmodel: 3d\nvoltages: [3 kV]\n"
-                "quantities: [highest_z_m, breakdown_margin]\nmethod: slsqp\nstarts: 1\n"
-                "evaluations: 12\ntolerance: 1e-3\nobjectives: [{quantity: highest_z_m}]\n"
-                "limits: [{quantity: breakdown_margin, above: 0.5}]\nvariables:\n"
-                "  - {name: plies.film.thickness, low: 80 um, high: 130 um, start: 120 um}\n"
-                "  - {name: shapes.active.radius, low: 8.5 mm, high: 9.5 mm}\n");
-  optimise("parts.yaml");
-  assert_contains(command_out, "plies.film.thickness");
-  const char *margin = strstr(command_out, "breakdown_margin");
-  assert_true(margin == NULL || strtod(margin + 16, NULL) > 0.499);
-  assert_int_equal(command_run("check parts.optimise/best.yaml"), 0);
-}
-
-/* A critical voltage as a limit of a search by the model's gradients; that of a film goes with its
- * thickness. */
-TEST(test_critical_voltage)
-{
-  static char bytes[COMMAND_TEXT_MAX];
-  double first_m, first_V, best_um;
-  command_write("disc.yaml",
-                "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\npre_stretch: 1.5\n"
-                "frame: {inner_diameter: 30 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
-                "compute: {models: [3d], voltage: {values: [2 kV]}, solid: {film: membrane}}\n");
-  command_write("lives.yaml",
-                "dea_explore: 1\nname: lives\ndesign: disc.yaml\nmodel: 3d\nvoltages: [1 kV]\n"
-                "quantities: [capacitance_F, breakdown_voltage_V]\nmethod: slsqp\nstarts: 1\n"
-                "evaluations: 12\nobjectives: [{quantity: capacitance_F, goal: most}]\n"
-                "limits: [{quantity: breakdown_voltage_V, above: 4 kV}]\n"
-                "variables: [{name: film.thickness, low: 80 um, high: 200 um}]\n");
-  optimise("lives.yaml");
-  const char *best = strstr(command_out, "film.thickness");
-  assert_non_null(best);
-  assert_int_equal(sscanf(best, "film.thickness %lf um", &best_um), 1);
-  command_read("lives.optimise/cases.csv", bytes);
-  assert_int_equal(sscanf(strchr(bytes, '\n'), "\n0,%*[^,],%lf,%*f,%lf", &first_m, &first_V), 2);
-  assert_close(1e-6 * best_um, first_m * 4e3 / first_V, 1e-5, 0);
-}
-
 /* The force on a tip as a limit of a search by the model's gradients, by a number of the film and
  * one of the tip, which ends where the limit is; and what matters to that force. */
 TEST(test_force)
@@ -277,31 +225,6 @@ TEST(test_columns_of_monitors)
   assert_contains(bytes, "<dt>hub z</dt>");
 }
 
-/* A slow ripple moves the hub as the voltage does: by the slope of its z. */
-TEST(test_columns_by_frequency)
-{
-  static const char still[] = "--set 'plies[0].viscosity=none' --set compute.solid.order=2 -q -o";
-  char command[300];
-  command_write("cone.yaml", cone);
-  snprintf(command, sizeof command,
-           "run cone.yaml --study frequency --set 'compute.frequency={bias: [3 kV], from: 0.01 Hz, "
-           "to: 0.02 Hz, points: 2, excitation: 2 V}' %s slow.run",
-           still);
-  run_solid(command);
-  double z_m[2];
-  for (int i = 0; i < 2; i++) {
-    snprintf(command, sizeof command,
-             "run cone.yaml --study sweep --set 'compute.voltage={values: [%s kV]}' %s %d.run",
-             i == 0 ? "2.99" : "3.01", still, i);
-    run_solid(command);
-    snprintf(command, sizeof command, "%d.run/summary.json", i);
-    z_m[i] = last_of(command, "hub_z_m");
-  }
-  assert_close(last_of("slow.run/summary.json", "hub_z_amplitude_m"), 2 * (z_m[1] - z_m[0]) / 20,
-               1e-3, 0);
-  assert_close(last_of("slow.run/summary.json", "hub_z_phase_rad"), 0, 0, 1e-3);
-}
-
 /* A number of a ply beside what its tolerance does to a monitor; angles and places have none. */
 TEST(test_tolerances_of_plies)
 {
@@ -360,30 +283,6 @@ TEST(test_end_of_a_line)
   }
   assert_close(sum, 1, 1e-5, 0);
   assert_close(by[VOLTAGE], 2 * by[PERMITTIVITY], 1e-5, 0);
-}
-
-/* Slopes of the lowest frequency with study modal, which the command names; all that has a mass is
- * the film. */
-TEST(test_frequency)
-{
-  only_nightly();
-  static char bytes[COMMAND_TEXT_MAX];
-  command_write("cone.yaml", cone);
-  run_solid("run cone.yaml --set compute.sensitivity.modes=2 --study modal --study sensitivity -q "
-            "-o ringing.run");
-  command_read("ringing.run/3d_sensitivity_slopes.csv", bytes);
-  assert_contains(bytes, "\n3,plies.film.thickness,0.0001,m,frequency,");
-  const char *row = strstr(bytes, "\n3,plies.film.density,");
-  double elasticity;
-  assert_non_null(row);
-  for (int mode = 1; mode <= 2; mode++) {
-    int found;
-    row = strstr(row + 1, ",frequency,");
-    assert_non_null(row);
-    assert_int_equal(sscanf(row, ",frequency,%*f,%*f,%lf,,,%d", &elasticity, &found), 2);
-    assert_close(elasticity, -0.5, 1e-6, 0);
-    assert_int_equal(found, mode);
-  }
 }
 
 /* The heaviest film that does not vibrate below a limit: f^2 times its density stays, as nothing

@@ -185,15 +185,6 @@ TEST(test_breakdown_fits_the_film)
   assert_close(device->film.breakdown.exponent, 1.13, 1e-13, 0);
 }
 
-TEST(test_first_set_is_the_default)
-{
-  read_good(GOOD_DESIGN, NULL, 0);
-  assert_string_equal(device->film.law_id, "a");
-  assert_close(device->film.param[1], -6000, 1e-14, 0);
-  assert_close(device->film.permittivity.at_rest, 2.8, 1e-14, 0);
-  assert_close(device->film.stretch_max, 2, 0, 0);
-}
-
 TEST(test_every_default_is_listed)
 {
   read_good(GOOD_DESIGN, NULL, 0);
@@ -227,18 +218,6 @@ TEST(test_every_default_is_listed)
   }
   assert_int_equal(listed("film.thickness")->location.line, 2);
   assert_int_equal(listed("film.thickness")->location.column, 35);
-}
-
-TEST(test_default_sweep)
-{
-  read_good(GOOD_DESIGN, NULL, 0);
-  assert_int_equal(design->compute.voltage_count, 81);
-  assert_close(design->compute.voltages_V[0], 0, 0, 0);
-  assert_close(design->compute.voltages_V[3], 300, 1e-14, 0);
-  assert_close(design->compute.voltages_V[80], 8000, 0, 0);
-  assert_close(design->compute.path_max_stretch.si, 2.25, 1e-14, 0);
-  assert_int_equal(design->compute.model_count, 2);
-  assert_true(design->report.svg && !design->report.pdf && !design->report.png);
 }
 
 TEST(test_sweeps)
@@ -309,27 +288,12 @@ TEST(test_null_takes_a_section_away)
   assert_string_equal(listed("fibres")->text, "none");
 }
 
-TEST(test_coverage_given)
-{
-  const struct dea_override set = {"compute.coverage", "0.2"};
-  read_good(GOOD_DESIGN, &set, 1);
-  assert_close(device->coverage, 0.2, 0, 0);
-}
-
 TEST(test_pre_stretch_beyond_the_data_is_a_warning)
 {
   const struct dea_override set = {"pre_stretch", "2.5"};
   read_good(GOOD_DESIGN, &set, 1);
   assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
   assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
-}
-
-TEST(test_fibres_that_just_touch_are_good)
-{
-  // The ends are arcs: 8 fibres of 2 mm meet at 1 mm/sin(22.5 degrees) = 2.613125930 mm.
-  const struct dea_override touching[] = {{"fibres.count", "8"},
-                                          {"fibres.tip_radius", "2.61312592975275 mm stretched"}};
-  read_good(GOOD_DESIGN, touching, 2);
 }
 
 TEST(test_taper_and_free_end)
@@ -387,37 +351,6 @@ TEST(test_older_words_of_keys)
       DEA_E_DESIGN);
   assert_true(dea_finding_count(ctx, DEA_ERROR) == 1);
   dea_finding_clear(ctx);
-}
-
-TEST(test_straight_clamped_fibres_are_the_default)
-{
-  read_good(GOOD_DESIGN, NULL, 0);
-  assert_close(device->fibre_tip_width_m, 2e-3, 1e-14, 0);
-  assert_close(device->fibre_outer_gap_m, 0, 0, 0);
-  const struct dea_override gap = {"fibres.outer_gap", "2 mm stretched"};
-  tear_down(state);
-  set_up(state);
-  read_good(GOOD_DESIGN, &gap, 1);
-  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1); // the end is not free
-}
-
-TEST(test_examples_are_good)
-{
-  static const char *const names[] = {"plain-disc", "frdea-4", "frdea-8", "paper/fig02"};
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-    char file[512];
-    snprintf(file, sizeof file, "%s/examples/%s.yaml", DEA_SOURCE_DIR, names[i]);
-    assert_int_equal(dea_design_read(ctx, file, NULL, 0, &design), DEA_OK);
-    assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-    assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 0);
-    assert_close(device->electrode_radius_m, i < 3 ? 3.75e-3 : 5e-3, 1e-14, 0);
-    assert_close(device->coverage, i < 3 ? 0.25 : 0.2, 1e-14, 0);
-    assert_int_equal(device->fibre_count, i == 0 ? 0 : i == 2 ? 8 : 4);
-    dea_device_destroy(ctx, device);
-    dea_design_destroy(ctx, design);
-    design = NULL;
-    device = NULL;
-  }
 }
 
 /* Whether the reader refuses a value of a key, which it has to know. */

@@ -46,51 +46,6 @@ static struct dea_observation solve(const struct example *example, double voltag
   return seen;
 }
 
-/* 20 g on the hub: membrane theory integrated by another program, without the film's own weight;
- * the solid film is stiffer by its clamped edges. */
-TEST(test_cone)
-{
-  static const struct {
-    double kV, h_mm;
-  } table[] = {{0, 1.8179}, {3, 2.0871}, {5, 2.7982}};
-  struct example cone = open_example("cone-mass");
-  for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
-    struct dea_observation seen = solve(&cone, 1e3 * table[i].kV);
-    assert_close(-1e3 * seen.monitor[0][DEA_OBSERVED_Z], table[i].h_mm, 0.015, 0);
-  }
-  close_example(&cone);
-}
-
-/* Ten films take up ten times what a plate capacitor of one would, at the area and the thickness
- * that the film has in the middle; where it is not stretched evenly a little more or less. */
-TEST(test_stack)
-{
-  struct example stack = open_example("stack-10");
-  struct dea_observation seen = solve(&stack, 200);
-  double area_stretch = seen.monitor[1][DEA_OBSERVED_AREA_STRETCH], h_m = 20e-6 / 1.44;
-  double area_m2 = acos(-1.0) * 25e-6;
-  const struct dea_material *film = &stack.device->layout->plies[0].material;
-  double eps_r =
-      film->permittivity.at_rest + film->permittivity.slope * (1.2 * sqrt(area_stretch) - 1);
-  double charge = 10 * DEA_EPSILON_0 * eps_r * area_m2 * area_stretch * area_stretch / h_m * 200;
-  assert_close(seen.channel[1].charge_C, charge, 1e-4, 0);
-  close_example(&stack);
-}
-
-/* One quadrant driven: the plate tilts about the axis across it, away from the side that gives
- * way, and does not turn in the plane. */
-TEST(test_quadrants)
-{
-  struct example quadrants = open_example("quadrants");
-  const double *plate = solve(&quadrants, 3e3).monitor[0];
-  assert_true(fabs(plate[DEA_OBSERVED_TURN_Y]) > 3e-4);
-  assert_true(fabs(plate[DEA_OBSERVED_TURN_X]) < 0.01 * fabs(plate[DEA_OBSERVED_TURN_Y]));
-  assert_true(fabs(plate[DEA_OBSERVED_TURN_Z]) < 0.01 * fabs(plate[DEA_OBSERVED_TURN_Y]));
-  // the driven side gives way to the force that lifts the plate: R(w) takes x up for w_y < 0
-  assert_true(plate[DEA_OBSERVED_TURN_Y] < 0);
-  close_example(&quadrants);
-}
-
 /* Each quadrant has a source of its own: with the voltages the tilt goes a quarter round in a
  * quarter of a cycle, and the tables say what was played. */
 TEST(test_quadrants_round)

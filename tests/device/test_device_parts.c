@@ -177,17 +177,9 @@ static const struct {
     {PLIES, "plies: [{name: lower, shape: film, material: flim, thickness: 1 um}]", "flim", "flim"},
     {ELECTRODES, "electrodes: [{ply: lowest, side: top, shape: film, channel: drive}]",
      "no ply 'lowest'; did you mean 'lower'?", "lowest"},
-    {ELECTRODES, "electrodes: [{ply: sheet, side: top, shape: film, channel: drive}]",
-     "no ply 'sheet'; there are 'lower', 'upper'", "sheet"},
-    {ELECTRODES, "electrodes: [{ply: lower, side: top, shape: active, channel: grund}]",
-     "no channel 'grund'; did you mean 'ground'?", "grund"},
     {MORE, "springs: [{body: hub, direction: z, stiffness: 1 N/m}]",
      "there is no body 'hub'; there are none", "hub,"},
-    {MORE, "bodies: [{name: hub, shape: film}, {name: hub, shape: film}]",
-     "the name 'hub' is taken by the body in line 6", "hub, shape: film}]"},
     {SHAPES, THREE_SHAPES ", {name: a, kind: oval}]", "there is no shape 'oval'", "oval"},
-    {SHAPES, THREE_SHAPES ", {name: a, kind: balloon, radius: 9 mm}]",
-     "a device is made of flat plies, and a balloon is no shape of the plane", "balloon"},
     {SHAPES, THREE_SHAPES ", {name: a, kind: circle, radius: 2 mm, diameter: 4 mm}]",
      "unknown key 'diameter'", "diameter"},
     // materials
@@ -196,7 +188,6 @@ static const struct {
      "film, material: locks, thickness: 1 um, pre_stretch: [1.2, 2]}]",
      "ends before the pre-stretch 2 of ply 'upper'", "1.2, 2]"},
     // shapes
-    {SHAPES, THREE_SHAPES ", {name: a, kind: union, of: [a]}]", "is made of itself", "a]}"},
     {SHAPES,
      THREE_SHAPES ", {name: a, kind: copy, of: b}, {name: b, kind: copy, of: c}, "
                   "{name: c, kind: copy, of: a}]",
@@ -206,15 +197,8 @@ static const struct {
                   "[0 mm, 1 mm]]}]",
      "crosses or touches itself at (0.666667, 0.666667) mm", "a, kind"},
     {SHAPES,
-     THREE_SHAPES ", {name: a, kind: polygon, points: [[0 mm, 0 mm], [1 mm, 1 mm], [1 mm]]}]",
-     "this must be a list of 2 numbers", "[1 mm]]"},
-    {SHAPES,
      THREE_SHAPES ", {name: a, kind: polygon, points: [[0 mm, 0 mm], [1 mm, 1 mm], [1 mm, 2]]}]",
      "'2' has no unit", "2]]"},
-    {SHAPES, THREE_SHAPES ", {name: a, kind: ring, inner_radius: 3 mm, outer_radius: 2 mm}]",
-     "the ring's inner radius is not below the outer one", "a, kind"},
-    {SHAPES, THREE_SHAPES ", {name: a, kind: array, of: far, count_x: 0}]",
-     "count_x must be at least 1, not '0'", "0}]"},
     {SHAPES, THREE_SHAPES ", {name: far, kind: circle, radius: 1 mm}]",
      "the name 'far' is taken by the shape in line 2", "far, kind: circle, radius: 1"},
     {SHAPES, THREE_SHAPES ", {name: c, kind: intersection, of: [film, far]}]",
@@ -225,10 +209,6 @@ static const struct {
      THREE_SHAPES ", {name: a, kind: drawing, file: " DRAWINGS "dxf/inch.dxf, layer: 0, unit: mm}]",
      "dxf/inch.dxf is 25.4 mm, as the file itself says: leave 'unit' out, or change the file",
      "mm}]"},
-    {SHAPES,
-     THREE_SHAPES ", {name: a, kind: drawing, file: " DRAWINGS
-                  "dxf/inch.dxf, layer: 0, unit: ell}]",
-     "unit: 'ell' is none of: um, mm, cm, m, mil, in, ft", "ell}]"},
     // where things lie
     {ELECTRODES,
      "electrodes: [{ply: lower, side: top, shape: active, channel: one}, "
@@ -236,7 +216,6 @@ static const struct {
      "electrodes of the channels 'one' and 'two' lie on each other on one face of 'upper', about "
      "(0, 0) mm: 240 mm2",
      "film, channel: two"},
-    {PLIES, "plies: [{name: lower, shape: film, thickness: 1 um}]", "lacks 'material'", NULL},
     {PLIES, "plies: [{name: lower, shape: film, material: film, thickness: 1 kV}]",
      "'1 kV' is a voltage, but a length is due", "1 kV"},
     {ELECTRODES, "electrodes: [{ply: lower, side: top, shape: far, channel: drive}]",
@@ -249,19 +228,15 @@ static const struct {
      "plies: [{name: lower, shape: active, material: film, thickness: 1 um}]\n"
      "channels: [{name: drive}]\nmonitors: [{name: a, at: [19 mm, 0 mm]}]",
      "no ply lies where the monitor 'a' is", NULL},
-    {SUPPORTS, "supports: [{shape: far}]", "holds nothing", "far"},
     {SUPPORTS, "supports: [{edge: film, within: far}]", "within 'far' holds nothing", "film"},
     {MORE, "bodies: [{name: hub, shape: far}]", "nothing holds the body 'hub'", "hub"},
     {MORE, "bodies: [{name: a, shape: film}, {name: b, shape: active}]",
      "the bodies 'b' and 'a' lie on each other", "b, shape"},
     {MORE, "monitors: [{name: tip, at: [0, 0 mm]}]", "write for example '0 mm'", "0, 0 mm"},
-    {MORE, "monitors: [{name: tip, at: [0 mm]}]", "at must have 2 items, not 1", "[0 mm]"},
     {MORE, "monitors: [{name: tip, at: [50 mm, 0 mm]}]", "no ply lies where the monitor 'tip' is",
      "tip"},
     {MORE, "monitors: [{name: tip, shape: far, ply: lower}]",
      "the monitor 'tip' does not lie on the ply 'lower'", "tip"},
-    {MORE, "pressures: [{ply: lower, side: top, shape: far, pressure: 1 kPa}]",
-     "does not lie on its ply", "far"},
     // what does not go together
     {SUPPORTS, "supports: [{edge: film, hold: [clamped, x]}]", "'clamped' and 'hinged' stand alone",
      "clamped"},
@@ -276,30 +251,13 @@ static const struct {
      "bodies: [{name: hub, shape: active}]\nsprings: [{body: hub, direction: z, table: [[0 mm, 0 "
      "N], [0 mm, 1 N]]}]",
      "places must rise", NULL},
-    {MORE, "monitors: [{name: line, from: [0 mm, 0 mm], ply: lower}]",
-     "the line 'line' needs both its ends, 'from' and 'to'", "line,"},
-    {MORE, "monitors: [{name: line, ply: lower}]", "lacks the point x, y", NULL},
     {MORE, "channels: [{name: ground}]", "needs no line of its own", "ground"},
-    {MORE, "channels: [{name: drive, waveform: {kind: sin, amplitude: 1 kV}}]", "'sin'", "sin"},
-    {MORE, "channels: [{name: drive, waveform: {kind: step, to: 1 m}}]",
-     "is a length, but a voltage", "1 m"},
     {MORE,
      "channels: [{name: drive, waveform: {kind: sine, amplitude: 1 kV, frequency: 1 Hz, cycles: "
      "1}}]\ndrive: {series_resistance: 1 Mohm}",
      "series_resistance: in time the channel 'drive' has a waveform of its own", NULL},
-    {MORE,
-     "channels: [{name: drive, voltage: 1 kV}]\ndrive: {waveform: {kind: sine, amplitude: 1 kV, "
-     "frequency: 1 Hz, cycles: 1}, current_limit: 1 mA}",
-     "current_limit: in time the channel 'drive' has a voltage of its own", NULL},
-    {PLIES,
-     "plies: [{name: lower, shape: film, material: film, thickness: 1 um, pre_stretch: [1, 1, "
-     "1]}]",
-     "pre_stretch must have 1 to 2 items", "[1, 1, 1]"},
     // keys of the other form
     {MORE, "fibres: {count: 4}", "here a fibre is one of the 'plies'", "fibres"},
-    {MORE, "frame: {inner_diameter: 30 mm}", "here a rigid frame is one of the 'supports'",
-     "frame"},
-    {MORE, "film: {thickness: 3 um}", "here a film is one of the 'plies'", "film"},
     {MORE, "stripes: 3", "shape of kind array", "stripes"},
 };
 
@@ -396,33 +354,6 @@ TEST(test_gap_between_channels)
   }
 }
 
-/* A weight on a film that nothing else holds falls, but on a spring. */
-TEST(test_direction_that_nothing_holds)
-{
-  static const char *const held[] = {"bodies: [{name: hub, shape: active, free: [z]}]",
-                                     "bodies: [{name: hub, shape: active, free: [z]}]\n"
-                                     "springs: [{body: hub, direction: z, stiffness: 1 N/m}]"};
-  for (int i = 0; i < 2; i++) {
-    build(SUPPORTS, held[i]);
-    drop();
-    assert_true((find_finding(ctx, DEA_WARNING, "nothing holds the device along z") != NULL) ==
-                (i == 0));
-    assert_null(find_finding(ctx, DEA_WARNING, "along x"));
-  }
-}
-
-/* Keys of the general form in a file of the short one. */
-TEST(test_short_form_says_where_parts_belong)
-{
-  dea_finding_clear(ctx);
-  assert_int_equal(
-      read_and_build(ctx, GOOD_DESIGN "bodies: [{name: hub}]\n", NULL, 0, &design, &device),
-      DEA_E_DESIGN);
-  drop();
-  assert_non_null(find_error(ctx, "'bodies' belongs to the general form"));
-  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 1);
-}
-
 /* Items of lists go by their names in --set. */
 TEST(test_override_by_name)
 {
@@ -438,26 +369,6 @@ TEST(test_override_by_name)
   drop();
   assert_non_null(
       find_error(ctx, "'plies' is a list, not a section, and has no item of that name"));
-}
-
-TEST(test_no_dielectric_is_a_note)
-{
-  build(ELECTRODES, "");
-  assert_non_null(find_finding(ctx, DEA_NOTE, "a voltage does nothing"));
-  drop();
-}
-
-/* A ply may span what is open below it; what reaches beyond all of that is said. */
-TEST(test_overhang_is_a_note)
-{
-  build(0, NULL);
-  assert_null(find_finding(ctx, DEA_NOTE, "overhangs"));
-  drop();
-  build(PLIES, "plies: [{name: lower, shape: active, material: film, thickness: 100 um}, "
-               "{name: upper, shape: film, material: film, thickness: 50 um}]");
-  assert_non_null(
-      find_finding(ctx, DEA_NOTE, "the ply 'upper' overhangs the plies below it by up"));
-  drop();
 }
 
 static dea_status build_example(struct dea_context *own)
@@ -843,41 +754,6 @@ TEST(test_what_is_no_disc)
     }
     drop();
   }
-}
-
-/* A disc that lies anywhere brings its monitors too: there the model 3d has a free mesh. */
-TEST(test_disc_off_the_origin)
-{
-  static const char text[] =
-      "dea: 1\n"
-      "shapes:\n"
-      "  - {name: film, kind: circle, radius: 15 mm, x: 5 mm, y: 3 mm}\n"
-      "  - {name: active, kind: circle, radius: 5 mm, x: 5 mm, y: 3 mm}\n"
-      "plies:\n"
-      "  - {name: film, shape: film, material: film, thickness: 100 um, pre_stretch: 1.1}\n"
-      "electrodes:\n"
-      "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
-      "  - {ply: film, side: top, shape: active, channel: drive}\n"
-      "supports: [{edge: film}]\n"
-      "compute: {models: [3d], voltage: {values: [2 kV]}}\n" FILM_MATERIAL;
-  static const char *const names[] = {"axisymmetric", "3d"};
-  struct dea_design *other;
-  struct dea_device *disc;
-  struct dea_load_point point[2];
-  assert_int_equal(read_and_build(ctx, text, NULL, 0, &other, &disc), DEA_OK);
-  for (int i = 0; i < 2; i++) {
-    const struct dea_model_type *type = dea_model_find(names[i]);
-    struct dea_model *model;
-    assert_int_equal(dea_model_create(ctx, type, other, disc, &model), DEA_OK);
-    assert_int_equal(type->solve(ctx, model, 2e3, &point[i]), DEA_OK);
-    type->destroy(ctx, model);
-  }
-  assert_close(point[1].electrode_edge_u_m, point[0].electrode_edge_u_m, 0.01, 0); // coarse mesh
-  assert_close(point[1].electrode_stretch, 1 + point[1].electrode_edge_u_m / 5e-3, 1e-12, 0);
-  assert_close(point[1].centre_z_m, 0, 0, 1e-12);
-  assert_true(isnan(point[1].fibre_tip_z_m)); // there are no fibres
-  dea_device_destroy(ctx, disc);
-  dea_design_destroy(ctx, other);
 }
 
 TESTS(context_set_up, context_tear_down)

@@ -1,5 +1,5 @@
-/* Parts of src/explore on functions in closed form: sequences, quantiles, indices, processes, and a
- * store that is cut off anywhere. */
+/* Parts of src/explore on functions in closed form: sequences, quantiles, indices, processes, a
+ * store that is cut off anywhere, and a sparse grid. */
 #include "base/correlations.h"
 #include "explore/explore_sweep.h"
 #include "explore/plan.h"
@@ -47,24 +47,6 @@ TEST(test_sobol)
   free(u);
 }
 
-/* The integral of a product over 21 dimensions, which is 1: the error of 4096 points is far below
- * that of random ones (0.3 / 64), which wrong direction numbers would not reach. */
-TEST(test_sobol_integral)
-{
-  enum { N = 4096 };
-  double *u = calloc((size_t)N * DEA_SOBOL_DIMENSIONS, sizeof *u), sum = 0;
-  dea_sample_sobol(DEA_SOBOL_DIMENSIONS, N, 1, u);
-  for (size_t i = 0; i < N; i++) {
-    double product = 1;
-    for (size_t d = 0; d < DEA_SOBOL_DIMENSIONS; d++) {
-      product *= 1 + 0.2 * (u[i * DEA_SOBOL_DIMENSIONS + d] - 0.5);
-    }
-    sum += product;
-  }
-  assert_true(fabs(sum / N - 1) < 3e-4);
-  free(u);
-}
-
 TEST(test_quantile)
 {
   for (double x = -8; x <= 8; x += 0.25) {
@@ -108,38 +90,6 @@ TEST(test_correlated_samples)
     }
   }
   free(u);
-}
-
-/* A matrix with an eigenvalue of 0 is one of numbers that go together; below 0 there are none. */
-TEST(test_impossible_correlations)
-{
-  const struct {
-    double of[3];
-    size_t count;
-    const char *wrong; // NULL: nothing
-  } cases[] = {
-      {{0.5, 0.5, 0.5}, 3, NULL},
-      {{-1, 1, -1}, 3, NULL},
-      {{0.6, 0.8, 0}, 3, NULL},            // 0 but for rounding: 0.36 + 0.64 = 1
-      {{0.9, 0.9, -0.9}, 3, "no numbers"}, // the third goes with both, which go apart
-      {{1, 0.5, -0.5}, 3, "no numbers"},   // two that are one, with different friends
-      {{0.5, 0.5}, 2, "2 correlations where 3 variables have 3"},
-  };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    struct dea_quantity listed[3] = {{0}};
-    size_t count;
-    for (int k = 0; k < 3; k++) {
-      listed[k].si = cases[i].of[k];
-    }
-    dea_finding_clear(ctx);
-    assert_int_equal(dea_correlations_check(ctx, listed, cases[i].count, 3, "variable"), DEA_OK);
-    const struct dea_finding *found = dea_finding_get(ctx, &count);
-    assert_int_equal(count, cases[i].wrong != NULL);
-    if (count > 0) {
-      assert_non_null(strstr(found[0].text, cases[i].wrong));
-    }
-  }
-  dea_finding_clear(ctx);
 }
 
 /* Ishigami and Homma's function, whose indices are known in closed form, to 1 %. */
@@ -447,51 +397,6 @@ TEST(test_sparse_grid)
     worst = fmax(worst, off);
   }
   assert_true(worst > 1e-9 && worst < 1e-3);
-  dea_emulator_free(ctx, &of.e);
-}
-
-static double smooth_of_voltage(const double *share, double V)
-{
-  (void)share;
-  return sin(V / 1500);
-}
-
-static double ends(const double *share, double V)
-{
-  return V > 2600 + 1000 * share[0] ? NAN : share[0] + V; // as a film that is pulled in
-}
-
-/* Beyond what all designs have, and beyond the ranges, there is no value; flags are of designs and
- * voltages beside. */
-TEST(test_emulator_refuses)
-{
-  static struct emulated of;
-  double value, error;
-  unsigned flags;
-  emulate(1, 2, ends, &of);
-  for (size_t c = 0; c < of.e.case_count; c++) {
-    of.flags[c * VOLTS + 4] = of.nodes[c] == 0; // the lowest share, at 2 kV
-  }
-  static const struct {
-    double share, V;
-    bool there;
-    unsigned flags;
-  } cases[] = {{0.3, 2500, true, 0},  {0.3, 2501, false, 0},     {-1e-3, 1000, false, 0},
-               {1.001, 0, false, 0},  {0.01, 2000, true, 1},     {0.01, 1400, true, 0},
-               {0.01, 1600, true, 1}, {0.1464466, 2000, true, 0}};
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    assert_int_equal(
-        dea_emulator_at(ctx, &of.e, &cases[i].share, &cases[i].V, 1, &value, &error, &flags),
-        DEA_OK);
-    assert_int_equal(isfinite(value), cases[i].there);
-    assert_int_equal(isfinite(error), cases[i].there);
-    assert_int_equal(flags, cases[i].flags);
-  }
-  dea_emulator_free(ctx, &of.e);
-  emulate(0, 1, smooth_of_voltage, &of); // points of one design
-  assert_int_equal(dea_emulator_at(ctx, &of.e, NULL, &(double){1234}, 1, &value, &error, &flags),
-                   DEA_OK);
-  assert_true(fabs(value - smooth_of_voltage(NULL, 1234)) <= error && error < 1e-2);
   dea_emulator_free(ctx, &of.e);
 }
 

@@ -149,25 +149,6 @@ TEST(test_front)
   }
 }
 
-/* Slopes by y are missing: differences stand in for them, and are counted. */
-TEST(test_slopes_that_are_missing)
-{
-  static const int sum[] = {0, 0};
-  struct dea_optimum best;
-  size_t count, replaced[2] = {0, 0};
-  struct dea_search search = search_of(sum, 1);
-  search.limit_count = 1;
-  search.starts = 1;
-  search.replaced = replaced;
-  gradients = partly = true;
-  const size_t with = run(&search, "partly", &best, &count);
-  gradients = partly = false;
-  assert_close(best.p[0], sqrt(2), 1e-4, 0);
-  assert_close(best.p[1], sqrt(2), 1e-4, 0);
-  assert_int_equal(replaced[0], 0);
-  assert_true(replaced[1] > 1 && with <= 3 * replaced[1]);
-}
-
 /* x is missed by d to either side: the product stays at least 2 at the smaller x, which is then the
  * root of 2 and d; by the worst, and by mean and spread, where the standard deviations of sum and
  * product over -d, 0, d are d and d y. */

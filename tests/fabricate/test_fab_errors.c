@@ -94,27 +94,6 @@ TEST(test_what_cannot_be_built)
   expect("width: 2 mm}", "width: 0.2 mm}", "a tab of 1 mm width is wider than a fibre", 14);
 }
 
-/* Fibres that widen outwards: the lead passes their tips, and goes under their outer ends. */
-TEST(test_lead_under_a_taper)
-{
-  static const char *const widths[] = {"8 mm", "10 mm"};
-  for (size_t i = 0; i < 2; i++) {
-    struct dea_context *ctx;
-    assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-    const struct dea_override sets[] = {{"fibres.width", widths[i]},
-                                        {"fibres.tip_width", "1 mm"},
-                                        {"fabrication.leads.angle", "20 degree"}};
-    assert_int_equal(build(ctx, DESIGN, sets, 3), DEA_OK);
-    size_t count, found = 0;
-    const struct dea_finding *findings = dea_finding_get(ctx, &count);
-    for (size_t k = 0; k < count; k++) {
-      found += strstr(findings[k].text, "runs under 'fibres'") != NULL;
-    }
-    assert_int_equal(found, i);
-    dea_context_destroy(ctx);
-  }
-}
-
 TEST(test_parts_that_overlap)
 {
   // fibres that overlap, and leads at a right angle that are nearly as wide as their electrode
@@ -154,55 +133,6 @@ TEST(test_each_allocation)
     dea_design_destroy(ctx, design);
     dea_context_destroy(ctx);
   }
-}
-
-/* Extremes of every key by itself: refused or built, never worse. */
-TEST(test_hostile_values)
-{
-  static const char *const keys[] = {
-      "kerf",          "minimum_feature",    "sheet.width",       "sheet.height",
-      "sheet.margin",  "sheet.gap",          "ring.width",        "ring.contact_window",
-      "holder.anchor", "holder.tab_width",   "holder.tab_length", "blank.margin",
-      "leads.width",   "leads.pad_diameter", "marks.diameter",    "marks.grid"};
-  static const char *const values[] = {"0 mm", "1e-300 mm", "1e-9 mm", "0.01 mm", "1 mm",
-                                       "9 mm", "99 mm",     "999 mm",  "10 m"};
-  for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
-    for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
-      struct dea_context *ctx;
-      char key[64], value[64];
-      snprintf(key, sizeof key, "fabrication.%s", keys[k]);
-      snprintf(value, sizeof value, "%s%s", values[v], k > 10 ? " stretched" : "");
-      const struct dea_override sets[] = {{"fabrication.sheet", "{width: 9 m, height: 9 m}"},
-                                          {key, value}};
-      assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-      dea_status status = build(ctx, DESIGN, sets, 2);
-      assert_true(status == DEA_OK || status == DEA_E_DESIGN);
-      assert_true(status == DEA_OK || dea_finding_count(ctx, DEA_ERROR) > 0);
-      dea_context_destroy(ctx);
-    }
-  }
-}
-
-TEST(test_letters)
-{
-  struct dea_context *ctx;
-  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  struct dea_text text = {.ctx = ctx};
-  dea_xml_add(&text, "<b a=\"1\">&'\xc3\xa4\x01\xff\xc3");
-  assert_string_equal(dea_text_get(&text),
-                      "&lt;b a=&quot;1&quot;&gt;&amp;&#39;\xc3\xa4 \xef\xbf\xbd\xef\xbf\xbd");
-  dea_text_free(&text);
-  static const char *const bad[] = {"\xc0\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\x80",
-                                    "\xf0\x9f"};
-  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-    const char *at = bad[i];
-    assert_int_equal(dea_letter_next(&at), 0xfffd);
-    assert_ptr_equal(at, bad[i] + 1);
-  }
-  const char *smile = "\xf0\x9f\x98\x80";
-  assert_int_equal(dea_letter_next(&smile), 0x1f600);
-  assert_int_equal(dea_letter_next(&smile), 0);
-  dea_context_destroy(ctx);
 }
 
 TESTS(NULL, NULL)

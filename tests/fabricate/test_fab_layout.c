@@ -155,24 +155,6 @@ TEST(test_marks_beside_rectangles)
   }
 }
 
-/* Rows of copies are as far apart as the parts are high, 74 mm, not wide. */
-TEST(test_rows_of_copies)
-{
-  static const struct dea_override sets[] = {{"fabrication.copies", "4"},
-                                             {"fabrication.sheet.width", "110 mm"},
-                                             {"fabrication.sheet.height", "320 mm"},
-                                             {"fabrication.sheet.gap", "4 mm"}};
-  assert_int_equal(workshop_make(DEVICE("1", ""), sets, 4), DEA_OK);
-  for (size_t i = 0; i < workshop->count; i++) {
-    double first[2], last[2];
-    if (!workshop->part[i].paper) {
-      dea_sheet_place(&workshop->layout[i], 0, first);
-      dea_sheet_place(&workshop->layout[i], 3, last);
-      assert_close(first[1] - last[1], 3 * (78e-3 + workshop->plan.kerf_m), 1e-12, 0);
-    }
-  }
-}
-
 /* Films that are alike have one file, and faces that are. */
 TEST(test_alike)
 {

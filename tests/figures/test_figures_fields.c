@@ -73,46 +73,6 @@ TEST(test_patches)
   dea_field_mesh_destroy(ctx, mesh);
 }
 
-/* A rectangle away from the origin: its own middle, box, boundary, and section. */
-TEST(test_off_centre)
-{
-  static const struct dea_mesh_field displacement = {.name = "displacement_m",
-                                                     .unit = "m",
-                                                     .meaning = "displacement",
-                                                     .kind = DEA_MESH_VECTOR,
-                                                     .components = 3};
-  struct dea_field_mesh *mesh;
-  struct dea_surface_lattice drawing;
-  struct dea_outline *lines;
-  double *u = NULL, *found;
-  size_t count;
-  int *nodes = NULL;
-  assert_int_equal(dea_field_mesh_create(ctx, 9, &mesh), DEA_OK);
-  assert_int_equal(dea_field_mesh_add_block(ctx, mesh, 2, 0, 1, &nodes), DEA_OK);
-  assert_int_equal(dea_field_mesh_add(ctx, mesh, &displacement, &u), DEA_OK);
-  for (int p = 0; p < 9; p++) {
-    nodes[p] = p;
-    mesh->X[3 * p] = 0.02 + 0.02 * (p % 3);
-    mesh->X[3 * p + 1] = 0.01 * (p / 3);
-    u[3 * p + 2] = p == 4 ? 1e-3 : 0;
-  }
-  assert_int_equal(dea_surface_lattice_create(ctx, mesh, 100, &drawing), DEA_OK);
-  assert_close(drawing.centre_m[0], 0.04, 1e-12, 0);
-  assert_close(drawing.centre_m[1], 0.01, 1e-12, 0);
-  assert_close(drawing.radius_m, hypot(0.02, 0.01), 1e-12, 0);
-  assert_int_equal(dea_surface_lattice_section(ctx, &drawing, 0, &found, &count), DEA_OK);
-  assert_in_range(count, 3, 20);
-  assert_close(found[0], -0.02, 1e-9, 0);
-  assert_close(found[count - 1], 0.02, 1e-9, 0);
-  assert_close(found[count + count / 2], 1e-3, 1e-9, 0); // the bubble's top is in the middle
-  dea_free(ctx, found);
-  dea_surface_lattice_free(ctx, &drawing);
-  assert_int_equal(dea_surface_lattice_outlines(ctx, mesh, &lines, &count), DEA_OK);
-  assert_int_equal(count, 4);
-  dea_free(ctx, lines);
-  dea_field_mesh_destroy(ctx, mesh);
-}
-
 TEST(test_section)
 {
   struct dea_field_mesh *mesh = fake_surface(ctx, 1e3);
@@ -133,20 +93,6 @@ TEST(test_section)
     dea_free(ctx, found);
   }
   dea_surface_lattice_free(ctx, &drawing);
-  dea_field_mesh_destroy(ctx, mesh);
-}
-
-TEST(test_what_cannot_be_drawn)
-{
-  struct dea_field_mesh *mesh;
-  struct dea_surface_lattice drawing;
-  struct dea_outline *lines;
-  size_t count;
-  int *nodes;
-  assert_int_equal(dea_field_mesh_create(ctx, 8, &mesh), DEA_OK);
-  assert_int_equal(dea_field_mesh_add_block(ctx, mesh, 1, 1, 1, &nodes), DEA_OK);
-  assert_int_equal(dea_surface_lattice_create(ctx, mesh, 10, &drawing), DEA_E_ARGUMENT);
-  assert_int_equal(dea_surface_lattice_outlines(ctx, mesh, &lines, &count), DEA_E_ARGUMENT);
   dea_field_mesh_destroy(ctx, mesh);
 }
 
@@ -274,23 +220,6 @@ TEST(test_figures)
   assert_non_null(strstr(text, "at 1 kV, z drawn 2000 times larger"));
   fclose(script);
   assert_non_null(find_finding(ctx, DEA_NOTE, "figure 'surface' shows 1 kV"));
-  dea_result_destroy(ctx, result);
-}
-
-/* A flat film, one surface, or none. */
-TEST(test_figures_of_little)
-{
-  const struct dea_figure_options options = {.format = {.svg = true, .width_m = 0.17},
-                                             .voltage_V = NAN};
-  struct dea_result *result;
-  design = fake_design();
-  assert_int_equal(dea_result_create(ctx, &design, NULL, &result), DEA_OK);
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("none"), &options, NULL), DEA_OK);
-  assert_false(there("none/map.gp"));
-  assert_int_equal(dea_result_add_surface(ctx, result, "fake", 0, 0, fake_surface(ctx, 0)), DEA_OK);
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &options, NULL), DEA_OK);
-  assert_true(there("one/map.svg") && there("one/surface.svg") && there("one/section.svg"));
-  assert_false(there("one/animation.gp"));
   dea_result_destroy(ctx, result);
 }
 

@@ -237,20 +237,6 @@ TEST(test_faults)
   dea_finding_clear(ctx);
 }
 
-/* What is so far away that the two have no common scale: a unit in capital letters (12 Mm). */
-TEST(test_far_apart)
-{
-  struct dea_region near = circle(0, 0, 2.5e-3), far = circle(0, -12e6, 2.5e-3), out = {.ctx = ctx};
-  for (int i = 0; i < 2; i++) {
-    assert_message(dea_region_combine(ctx, i == 0 ? DEA_UNION : DEA_DIFFERENCE,
-                                      i == 0 ? &near : &far, i == 0 ? &far : &near, &out),
-                   DEA_E_DESIGN, "smaller than a billionth of the distance");
-    assert_int_equal(out.contour_count, 0);
-  }
-  dea_region_free(&near);
-  dea_region_free(&far);
-}
-
 static dea_status cut_some(struct dea_context *own)
 {
   struct dea_region a = {.ctx = own}, b = {.ctx = own}, out = {.ctx = own};

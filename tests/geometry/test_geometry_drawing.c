@@ -448,29 +448,6 @@ TEST(test_random_polygons)
   }
 }
 
-/* Pieces below the tolerance between longer ones are none, also in polylines and where a path
- * closes; what is as small as that all along stays. */
-TEST(test_tiny_pieces)
-{
-  static const char *const paths[] = {"M0 0H40V1e-4V20H0z", "M0 0H40V20H0V3e-4z",
-                                      "m0 0h40v20h-40v-19.9999999z"};
-  struct dea_region region = {.ctx = ctx};
-  for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-    char text[300];
-    snprintf(text, sizeof text, "<svg width='100mm' viewBox='0 0 100 100'><path d='%s'/></svg>",
-             paths[i]);
-    struct dea_drawing *drawing = read_svg(text);
-    assert_int_equal(dea_drawing_region(drawing, "0", here, &region), DEA_OK);
-    assert_int_equal(region.vertex_count, 4);
-    assert_close(1e6 * dea_region_area_m2(&region), 800, 0, 40 * 3e-4);
-    dea_region_free(&region);
-    dea_drawing_destroy(drawing);
-  }
-  struct dea_drawing *drawing = read_dxf("0\nLWPOLYLINE\n8\na\n70\n1\n" AT(0, 0) AT(4e-4, 0)
-                                             AT(4e-4, 4e-4) AT(0, 4e-4) CIRCLE(a, 1, 1, 3e-4));
-  expect(drawing, "a", 16e-8 + 9e-8 * pi, 2);
-}
-
 TEST(test_units)
 {
   static const struct {
@@ -734,42 +711,6 @@ TEST(test_svg_faults)
   struct dea_drawing *drawing = read_svg(SVG("<text>x</text><use/><circle r='1'/>"));
   expect(drawing, "a", pi, 1);
   assert_non_null(find_finding(ctx, DEA_WARNING, "layer 'a': 1 of the kind text is not read"));
-}
-
-/* Every part of a design as the project's own writer writes it. */
-TEST(test_round_trip)
-{
-  assert_int_equal(workshop_make(GOOD_DESIGN, NULL, 0), DEA_OK);
-  size_t seen = 0;
-  for (size_t i = 0; i < workshop->count; i++) {
-    const struct dea_part *part = &workshop->part[i];
-    struct dea_text text = {.ctx = ctx};
-    struct dea_drawing *drawing;
-    struct dea_region outer = {.ctx = ctx};
-    assert_int_equal(dea_dxf_write(workshop, i, &text), DEA_OK);
-    assert_int_equal(dea_drawing_read_dxf(ctx, part->name, text.data, text.length, NULL, &drawing),
-                     DEA_OK);
-    double wanted = 0;
-    for (size_t c = 0; c < part->contour_count; c++) {
-      struct dea_vertex *path;
-      size_t count;
-      if (part->contour[c].layer == DEA_LAYER_CUT_OUTER) {
-        assert_int_equal(dea_workshop_path(workshop, part, c, &path, &count), DEA_OK);
-        const struct dea_contour contour = {path, count, true};
-        wanted += dea_contour_area_m2(&contour);
-        dea_free(ctx, path);
-      }
-    }
-    if (wanted > 0) {
-      assert_int_equal(dea_drawing_region(drawing, "CUT_OUTER", here, &outer), DEA_OK);
-      assert_close(dea_region_area_m2(&outer), wanted * workshop->layout[i].count, 1e-9, 0);
-      seen++;
-    }
-    dea_region_free(&outer);
-    dea_drawing_destroy(drawing);
-    dea_text_free(&text);
-  }
-  assert_true(seen > 2);
 }
 
 static dea_status read_some(struct dea_context *own)

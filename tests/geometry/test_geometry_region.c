@@ -230,64 +230,6 @@ TEST(test_arrange)
   dea_region_free(&region);
 }
 
-/* A square in the notch of a long contour, whose box holds it: a ray from it crosses that contour
- * twice, so it lies beside it and is no hole. */
-TEST(test_arrange_in_a_notch)
-{
-  static const double corner[8][2] = {{0, 0}, {9, 0}, {9, 9}, {6, 9},
-                                      {6, 3}, {3, 3}, {3, 9}, {0, 9}};
-  enum { PARTS = 60 };
-  struct dea_vertex along[8 * PARTS];
-  for (int k = 0; k < 8 * PARTS; k++) {
-    const double *from = corner[k / PARTS], *to = corner[(k / PARTS + 1) % 8];
-    const double share = (double)(k % PARTS) / PARTS;
-    along[k] = (struct dea_vertex){.x_m = from[0] + share * (to[0] - from[0]),
-                                   .y_m = from[1] + share * (to[1] - from[1])};
-  }
-  struct dea_region region = empty();
-  dea_region_add(&region, along, 8 * PARTS);
-  add(&region, &dea_shape_rectangle, (double[]){4.5, 6.1, 1, 1});
-  add(&region, &dea_shape_rectangle, (double[]){1.5, 6.1, 1, 1}); // and one in its arm, a hole
-  assert_int_equal(dea_region_arrange(ctx, &region), DEA_OK);
-  assert_close(dea_region_area_m2(&region), 81 - 18 + 1 - 1, 1e-13, 0);
-  assert_true(dea_region_inside(&region, 4.5, 6.1) && !dea_region_inside(&region, 1.5, 6.1));
-  dea_region_free(&region);
-}
-
-/* The pieces near a box, against looking at all. */
-TEST(test_tree)
-{
-  struct dea_region region = empty();
-  unsigned long seed = 1;
-  for (int k = 0; k < 300; k++) {
-    double x[3];
-    for (int c = 0; c < 3; c++) {
-      seed = (1103515245UL * seed + 12345UL) & 0x7fffffffUL;
-      x[c] = (double)(seed >> 16) / 32768.0;
-    }
-    dea_region_add_circle(&region, x[0], x[1], 0.05 * x[2] + 1e-3, false, here);
-  }
-  const struct dea_region *const regions[1] = {&region};
-  struct dea_pieces all;
-  assert_int_equal(dea_pieces_build(ctx, regions, 1, &all), DEA_OK);
-  for (int k = 0; k < 100; k++) {
-    double x = 0.1 * (k % 10), y = 0.01 * k, box[4] = {x, y, x + 0.07, y + 0.03};
-    size_t cursor = 0, found, number = 0, wanted = 0;
-    while (dea_pieces_next(&all, box, &cursor, &found)) {
-      number++;
-    }
-    for (size_t i = 0; i < all.count; i++) {
-      double of[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-      dea_piece_grow_box(&all.piece[i], of);
-      wanted += of[0] <= box[2] + all.snap_m && box[0] <= of[2] + all.snap_m &&
-                of[1] <= box[3] + all.snap_m && box[1] <= of[3] + all.snap_m;
-    }
-    assert_int_equal(number, wanted);
-  }
-  dea_pieces_free(&all);
-  dea_region_free(&region);
-}
-
 static dea_status build_some(struct dea_context *own)
 {
   struct dea_region region = {.ctx = own}, copies = {.ctx = own};

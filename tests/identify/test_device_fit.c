@@ -115,32 +115,6 @@ TEST(test_prior_without_uncertainty)
   end(file, found);
 }
 
-/* A pre-stretch so close to 1, below which there is none, that the step down leads out: at rest C
- * is as its fourth power. */
-TEST(test_slope_to_one_side)
-{
-  static const double stretch = 1.0004;
-  double k, C[CAPACITIES], std[CAPACITIES], information = 0;
-  char text[1024] = "V (V),capacitance (pF),capacitance std (pF)\n";
-  struct dea_device_file *file;
-  struct dea_device_fit *found;
-  write_capacitances(&k, C, std);
-  const double at_1_F = k * 2.8 / (2.25 * 2.25), at_F = at_1_F * pow(stretch, 4),
-               slope_F = 4 * at_F / stretch;
-  for (int i = 0; i < CAPACITIES; i++) {
-    snprintf(text + strlen(text), sizeof text - strlen(text), "%g,%.15g,%.15g\n", 1e-3 * i,
-             1e12 * at_F, 1e10 * std[i]);
-    information += slope_F * slope_F / (1e-4 * std[i] * std[i]);
-  }
-  write_file("capacitance.csv", text);
-  assert_int_equal(fit("lumped", "  - {name: pre_stretch, start: 1.1}\n",
-                       "  - {name: c, file: capacitance.csv}\n", &file, &found),
-                   DEA_OK);
-  assert_close(found->values[0].value, stretch, 1e-5, 0);
-  assert_close(found->curves[0].model_std[0], slope_F / sqrt(information), 2e-3, 0);
-  end(file, found);
-}
-
 /* At rest the capacitance tells eps/h only. */
 TEST(test_not_told_apart)
 {
@@ -306,27 +280,6 @@ TEST(test_rows_come_back)
     assert_close(found->values[0].value, 1.42, 0, 5 * found->values[0].std);
     end(file, found);
   }
-}
-
-/* A highest row that a slack film alone would give: cut, the others want a film that is not slack
- * there, and so round after round. */
-TEST(test_rows_do_not_settle)
-{
-  struct dea_load_point points[STOPS];
-  struct dea_device_file *file;
-  struct dea_device_fit *found;
-  uint64_t seed = 3;
-  truth("lumped", points);
-  points[STOPS - 1].electrode_edge_u_m *= 4;
-  write_sweep(points, &seed);
-  assert_int_equal(fit("lumped",
-                       "  - {name: film.thickness, low: 40 um, high: 140 um}\n"
-                       "  - {name: pre_stretch, start: 1.15, fixed: yes}\n",
-                       "  - {name: s, file: sweep.csv, quantities: [electrode_edge_u_m]}\n", &file,
-                       &found),
-                   DEA_OK);
-  assert_false(found->settled);
-  end(file, found);
 }
 
 TESTS(set_up, tear_down)

@@ -62,11 +62,6 @@ static double sum_of_two(const double *p, double x)
   return (p[0] + 1.3 * p[1]) * x;
 }
 
-static double root(const double *p, double x)
-{
-  return sqrt(p[0]) * x; // no number below 0
-}
-
 static double logarithm(const double *p, double x)
 {
   return log(p[0]) + 0 * x;
@@ -225,23 +220,6 @@ TEST(test_profile_that_bends)
   assert_true(isinf(interval.low) && interval.low < 0);
   assert_close(interval.high, exp(1.1), 1e-4, 0);
   dea_lsq_free(&fit);
-}
-
-TEST(test_where_the_model_ends)
-{
-  struct line line = {.model = root, .count = 3, .x = {1, 2, 3}, .y = {0.01, 0.02, 0.03}, .std = 1};
-  struct dea_lsq_problem problem = problem_of(&line, 1);
-  struct dea_lsq_fit fit;
-  const double start = 4, bad = -1;
-  assert_int_equal(dea_lsq_solve(ctx, &problem, &start, NULL, &fit), DEA_OK);
-  assert_close(fit.p[0], 1e-4, 1e-3, 0); // steps of 1e-3 would end below 0
-  dea_lsq_free(&fit);
-  assert_int_equal(dea_lsq_solve(ctx, &problem, &bad, NULL, &fit), DEA_E_DOMAIN);
-  dea_context_clear(ctx);
-  problem.params = 4;
-  const double many[4] = {1, 1, 1, 1};
-  assert_int_equal(dea_lsq_solve(ctx, &problem, many, NULL, &fit), DEA_E_ARGUMENT);
-  dea_context_clear(ctx);
 }
 
 /* Share of `TRIALS` data sets of the saturating curve whose interval of +- one standard uncertainty

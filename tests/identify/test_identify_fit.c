@@ -8,8 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { ROWS_MAX = 200 };
-
 static struct dea_material material_of(const char *law, double a, double b)
 {
   return (struct dea_material){.law = dea_law_find(law), .param = {a, b}};
@@ -280,31 +278,6 @@ TEST(test_branches_find_themselves)
   dea_fit_destroy(ctx, fit);
 }
 
-/* Gent's law becomes the neo-Hookean one as its limit grows: where two relaxations of VHB 4910 show
- * no limit, it follows them as well. */
-TEST(test_limit_that_no_test_shows)
-{
-  static const double held_s[8] = {0, 1, 3, 10, 30, 100, 300, 1000}, peak_s[2] = {4.04, 8.15},
-                      stress_kPa[2][8] = {{81.7, 68.13, 59.71, 48.91, 39.76, 31.86, 26.57, 22.39},
-                                          {98.6, 89.27, 81.22, 68.92, 57.01, 46.22, 38.97, 33.23}};
-  add_law("neo-hookean");
-  add_law("gent");
-  snprintf(trial.file.branches.text, sizeof trial.file.branches.text, "2");
-  for (int t = 0; t < 2; t++) {
-    struct dea_fit_series *series = add_relaxation(8, 2 + t, NAN);
-    for (size_t i = 0; i < 8; i++) {
-      series->time_s[i] = peak_s[t] + held_s[i];
-      series->stress_Pa[i] = 1e3 * stress_kPa[t][i];
-      series->std_Pa[i] = 0.01 * series->stress_Pa[i];
-    }
-    assert_int_equal(dea_coupon_follow(&trial.memory, series->time_s, peak_s[t], &series->coupon),
-                     DEA_OK);
-  }
-  struct dea_fit *fit = run_trial();
-  assert_close(fit->candidates[1].chi2, fit->candidates[0].chi2, 1e-6, 0);
-  dea_fit_destroy(ctx, fit);
-}
-
 /* Relaxations at three temperatures of a branch whose time goes with 10^(-c1 dT/(c2 + dT)): that
  * law is found with its constants, from the same start with a colder test that is only compared. */
 TEST(test_shift_with_temperature)
@@ -379,26 +352,6 @@ TEST(test_laws_are_compared)
   struct dea_fit *fit = run_trial();
   assert_string_equal(fit->model.law->name, "gent");
   assert_true(fit->candidates[2].held_out < 1e-3 && fit->candidates[0].held_out > 10);
-  dea_fit_destroy(ctx, fit);
-}
-
-/* Equal stretches of 2 reach as far (I1 = 8.0625) as a strip that is stretched to 2.7063: so far it
- * is looked whether the law is stable, and such a test is proposed. */
-TEST(test_how_far_tests_reach)
-{
-  const struct dea_material material = material_of("gent", 4e4, 20);
-  add_law("gent");
-  fill(add_series(DEA_FIT_EQUIBIAXIAL, 20, 100), &material, 2);
-  struct dea_fit *fit = run_trial();
-  assert_close(fit->I1_max, 8.0625, 1e-12, 0);
-  assert_close(fit->stretch_max, 2, 1e-12, 0);
-  const double l = fit->stability[DEA_UNIAXIAL].to;
-  assert_close(l * l + 2 / l, 8.0625, 1e-12, 0);
-  bool proposed = false;
-  for (size_t k = 0; k < fit->next_count; k++) {
-    proposed = proposed || strstr(fit->next[k].what, "uniaxial to 2.71") != NULL;
-  }
-  assert_true(proposed);
   dea_fit_destroy(ctx, fit);
 }
 

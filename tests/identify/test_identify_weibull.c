@@ -5,7 +5,6 @@
 #include "testing.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { ROWS = 100, TRIALS = 300 };
 
@@ -118,30 +117,6 @@ TEST(test_profile)
   assert_true(fit.high_95 > fit.high[DEA_WEIBULL_FIELD]);
 }
 
-/* Films that held at fields far below say nothing: every interval stays where it is without them.
- */
-TEST(test_early_survivors)
-{
-  struct dea_weibull_data data = plain(2);
-  struct dea_weibull_fit without, with;
-  memset(survived, 0, sizeof survived);
-  field[0] = 80e6;
-  field[1] = 82e6;
-  assert_int_equal(dea_weibull_solve(ctx, &data, &without), DEA_OK);
-  data = plain(8);
-  for (size_t i = 2; i < 8; i++) {
-    field[i] = 5e6 + 1e6 * (double)i;
-    survived[i] = true;
-  }
-  assert_int_equal(dea_weibull_solve(ctx, &data, &with), DEA_OK);
-  for (int k = DEA_WEIBULL_FIELD; k <= DEA_WEIBULL_SHAPE; k++) {
-    assert_close(with.low[k], without.low[k], 1e-6, 0);
-    assert_close(with.high[k], without.high[k], 1e-6, 0);
-  }
-  assert_close(with.low_95, without.low_95, 1e-6, 0);
-  assert_close(with.high_95, without.high_95, 1e-6, 0);
-}
-
 /* Other units of area, and another reference, change E_0 by the law and nothing else. */
 TEST(test_area_scales)
 {
@@ -195,32 +170,6 @@ TEST(test_coverage)
     print_message("parameter %zu: %.1f %%\n", k, 100.0 * held[k] / TRIALS);
     assert_close((double)held[k] / TRIALS, 0.683, 0, 0.06);
   }
-}
-
-TEST(test_what_cannot_be_told)
-{
-  struct dea_weibull_data data = plain(10);
-  struct dea_weibull_fit fit;
-  for (size_t i = 0; i < 10; i++) {
-    field[i] = 1e8 + 1e6 * (double)i;
-    survived[i] = true;
-  }
-  assert_int_equal(dea_weibull_solve(ctx, &data, &fit), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "nothing broke down"));
-  dea_context_clear(ctx);
-  survived[0] = false;
-  assert_int_equal(dea_weibull_solve(ctx, &data, &fit), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "1 film broke down: too few"));
-  dea_context_clear(ctx);
-  for (size_t i = 0; i < 10; i++) { // all of one film, stretched: n and p go together
-    survived[i] = false;
-    stretch[i] = 1 + 0.1 * (double)i;
-    thickness[i] = 50e-6 / (stretch[i] * stretch[i]);
-  }
-  data.held[DEA_WEIBULL_STRETCH] = data.held[DEA_WEIBULL_THICKNESS] = false;
-  assert_int_equal(dea_weibull_solve(ctx, &data, &fit), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "do not tell the parameters apart"));
-  dea_context_clear(ctx);
 }
 
 TESTS(context_set_up, context_tear_down)

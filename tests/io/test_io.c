@@ -152,22 +152,6 @@ TEST(test_store_reads_back_to_the_bit)
   dea_run_destroy(ctx, run);
 }
 
-TEST(test_store_of_an_empty_result)
-{
-  struct dea_result *empty;
-  struct dea_curve *curve;
-  struct dea_run *run;
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &empty), DEA_OK);
-  assert_int_equal(dea_result_add_curve(ctx, empty, "lumped", "sweep", &curve), DEA_OK);
-  assert_int_equal(dea_results_h5_write(ctx, empty, in_folder("empty.h5")), DEA_OK);
-  assert_int_equal(dea_run_read(ctx, in_folder("empty.h5"), &run), DEA_OK);
-  assert_int_equal(run->result->curve_count, 1);
-  assert_int_equal(run->result->curves[0].count, 0);
-  assert_null(run->result->provenance.input);
-  dea_run_destroy(ctx, run);
-  dea_result_destroy(ctx, empty);
-}
-
 TEST(test_store_that_is_cut_off_or_is_none)
 {
   struct dea_run *run;
@@ -187,26 +171,6 @@ TEST(test_store_that_is_cut_off_or_is_none)
   assert_int_equal(mkdir(in_folder("bare"), 0777), 0);
   assert_int_equal(dea_run_read(ctx, in_folder("bare"), &run), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "not a run folder"));
-}
-
-TEST(test_store_with_damaged_bytes_never_crashes)
-{
-  char *bytes;
-  size_t length;
-  assert_int_equal(dea_results_h5_write(ctx, result, in_folder("results.h5")), DEA_OK);
-  assert_int_equal(dea_file_read(ctx, in_folder("results.h5"), 100000000, &bytes, &length), DEA_OK);
-  for (size_t i = 0; i < 60; i++) {
-    size_t at = length * i / 60;
-    char kept = bytes[at];
-    bytes[at] = (char)(kept ^ 0x5a);
-    assert_int_equal(dea_file_write(ctx, in_folder("bad.h5"), bytes, length), DEA_OK);
-    struct dea_run *run;
-    dea_status status = dea_run_read(ctx, in_folder("bad.h5"), &run);
-    assert_true((status == DEA_OK) == (run != NULL)); // a damaged number is still a number
-    dea_run_destroy(ctx, run);
-    bytes[at] = kept;
-  }
-  dea_free(ctx, bytes);
 }
 
 TEST(test_file_is_whole_or_absent)
@@ -347,23 +311,6 @@ TEST(test_script_runs_by_itself_in_its_folder)
   dea_free(ctx, again);
 }
 
-TEST(test_figure_without_content_is_skipped)
-{
-  static const char *const wanted[] = {"force", "strech"};
-  struct dea_result *bare;
-  struct dea_figure_options options = {.names = wanted, .name_count = 1};
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &bare), DEA_OK);
-  assert_int_equal(fake_add_model(ctx, bare, "axisymmetric", 1.0, false), DEA_OK);
-  assert_int_equal(dea_figures_write(ctx, bare, in_folder("f"), &options, NULL), DEA_OK);
-  assert_false(dea_path_exists(in_folder("f/force.gp")));
-  assert_int_equal(dea_finding_count(ctx, DEA_NOTE), 1);
-  options.name_count = 2;
-  assert_int_equal(dea_figures_write(ctx, bare, in_folder("f"), &options, NULL), DEA_E_ARGUMENT);
-  assert_string_equal(dea_context_message(ctx),
-                      "there is no figure 'strech'; did you mean 'stretch'?");
-  dea_result_destroy(ctx, bare);
-}
-
 TEST(test_without_gnuplot_the_scripts_stay)
 {
   char path[4096];
@@ -415,30 +362,6 @@ TEST(test_gnuplot_that_draws_nothing_is_reported)
     assert_non_null(strstr(dea_context_message(ctx), "gnuplot has drawn nothing into "));
     assert_int_equal(count_hidden(in_folder("f")), 0);
   }
-}
-
-TEST(test_run_folder_is_not_overwritten)
-{
-  const struct dea_run_folder_options quick = {.no_figures = true};
-  const struct dea_run_folder_options force = {.no_figures = true, .force = true};
-  assert_int_equal(dea_run_folder_write(ctx, result, in_folder("a/b"), &quick), DEA_OK);
-  assert_true(dea_path_exists(in_folder("a/b/axisymmetric_profiles.csv")));
-  assert_true(dea_path_exists(in_folder("a/b/lumped_path_events.csv")));
-  char *input = read_all(in_folder("a/b/design.yaml"));
-  assert_string_equal(input, result->provenance.input);
-  dea_free(ctx, input);
-  assert_int_equal(dea_run_folder_write(ctx, result, in_folder("a/b"), &quick), DEA_E_IO);
-  assert_non_null(strstr(dea_context_message(ctx), "--force"));
-  write_file("a/b/mine.csv", "x");
-  struct dea_result *bare;
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &bare), DEA_OK);
-  assert_int_equal(fake_add_model(ctx, bare, "lumped", 1.0, true), DEA_OK);
-  assert_int_equal(dea_run_folder_write(ctx, bare, in_folder("a/b"), &force), DEA_OK);
-  assert_true(dea_path_exists(in_folder("a/b/lumped_sweep.csv")));
-  assert_false(dea_path_exists(in_folder("a/b/axisymmetric_sweep.csv"))); // of the run before
-  assert_false(dea_path_exists(in_folder("a/b/axisymmetric_profiles.csv")));
-  assert_true(dea_path_exists(in_folder("a/b/mine.csv"))); // the user's own
-  dea_result_destroy(ctx, bare);
 }
 
 TEST(test_run_folder_where_a_file_is)

@@ -149,28 +149,6 @@ TEST(test_errors_have_places)
   assert_error("V (kV),force (mN)\n1,inf\n", 2, 3, "not a number");
 }
 
-TEST(test_all_errors_at_once)
-{
-  struct dea_measurement *m;
-  const char *text = "V (kV),force (mN)\n1,a\n1,b\n2,c\n";
-  assert_int_equal(dea_file_write(ctx, path, text, strlen(text)), DEA_OK);
-  assert_int_equal(dea_measurement_read(ctx, path, &m), DEA_E_IO);
-  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 3);
-  assert_non_null(strstr(dea_context_message(ctx), "3 errors"));
-}
-
-TEST(test_no_text_and_no_file)
-{
-  struct dea_measurement *m;
-  assert_int_equal(dea_measurement_read(ctx, folder, &m), DEA_E_IO);
-  assert_int_equal(dea_measurement_read(ctx, path, &m), DEA_E_IO);
-  assert_int_equal(dea_file_write(ctx, path, "V (kV)\0,2\n", 10), DEA_OK);
-  assert_int_equal(dea_measurement_read(ctx, path, &m), DEA_E_IO);
-  assert_non_null(strstr(dea_context_message(ctx), "is no text"));
-  assert_int_equal(dea_file_write(ctx, path, "", 0), DEA_OK);
-  assert_int_equal(dea_measurement_read(ctx, path, &m), DEA_E_IO);
-}
-
 TEST(test_curve_survives_the_round_trip)
 {
   struct dea_design design = fake_design();

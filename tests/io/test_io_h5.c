@@ -39,37 +39,6 @@ TEST(test_store_reads_single_attributes_only)
   dea_context_destroy(ctx);
 }
 
-/* One set under two names; a name that is taken is an error, and after an error nothing is done. */
-TEST(test_link)
-{
-  static const double numbers[3] = {1, 2, 4};
-  double back[3];
-  struct h5 h;
-  struct dea_context *ctx;
-  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  dea_h5_begin(&h, ctx, "links.h5");
-  hid_t file = dea_h5_file_create(&h);
-  hid_t one = dea_h5_group_create(&h, file, "one"), other = dea_h5_group_create(&h, file, "other");
-  dea_h5_write_array(&h, one, "x", H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, 3, numbers, "m", "lengths");
-  dea_h5_link(&h, one, "x", other);
-  assert_int_equal(h.status, DEA_OK);
-  assert_true(dea_h5_has(&h, other, "x"));
-  dea_h5_get_array(&h, other, "x", H5T_NATIVE_DOUBLE, 3, back);
-  assert_memory_equal(numbers, back, sizeof back);
-  dea_h5_link(&h, one, "x", other);
-  assert_int_equal(h.status, DEA_E_IO);
-  hid_t third = H5Gcreate2(file, "third", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  dea_h5_link(&h, one, "x", third);
-  h.status = DEA_OK;
-  assert_false(dea_h5_has(&h, third, "x"));
-  dea_h5_close(third);
-  dea_h5_close(one);
-  dea_h5_close(other);
-  dea_h5_close(file);
-  dea_h5_end(&h);
-  dea_context_destroy(ctx);
-}
-
 /* Files of libdea 0.1 say that long texts are UTF-8; now they say ASCII, for Octave. */
 TEST(test_long_text_of_older_files)
 {

@@ -346,33 +346,6 @@ TEST(test_pvd)
   assert_int_equal(dea_pvd_write(ctx, NULL, 0, path), DEA_OK);
 }
 
-TEST(test_bad_folder)
-{
-  struct dea_field_mesh *mesh = wedge(ctx, 1, 1);
-  char bad[700];
-  snprintf(bad, sizeof bad, "%s/none/a.vtu", folder);
-  assert_int_equal(dea_vtu_write(ctx, mesh, 0, true, bad), DEA_E_IO);
-  assert_non_null(strstr(dea_context_message(ctx), "none/a.vtu"));
-  assert_int_equal(dea_pvd_write(ctx, NULL, 0, bad), DEA_E_IO);
-  dea_field_mesh_destroy(ctx, mesh);
-}
-
-TEST(test_bad_meshes)
-{
-  static const struct dea_mesh_field none = {.name = "none", .components = 0},
-                                     pair = {
-                                         .name = "pair", .kind = DEA_MESH_VECTOR, .components = 2};
-  struct dea_field_mesh *mesh = wedge(ctx, 1, 1);
-  double *values;
-  int *nodes;
-  assert_int_equal(dea_field_mesh_add(ctx, mesh, &none, &values), DEA_E_ARGUMENT);
-  assert_int_equal(dea_field_mesh_add(ctx, mesh, &pair, &values), DEA_E_ARGUMENT);
-  assert_int_equal(dea_field_mesh_add_block(ctx, mesh, 1, 1, 1, &nodes), DEA_E_ARGUMENT);
-  assert_null(dea_field_mesh_find(mesh, "none"));
-  assert_non_null(dea_field_mesh_find(mesh, "height"));
-  dea_field_mesh_destroy(ctx, mesh);
-}
-
 static void write_one(struct dea_context *failing)
 {
   struct dea_field_mesh *mesh = wedge(failing, 2, 2);

@@ -267,21 +267,6 @@ TEST(test_fields_as_asked)
   assert_false(there("asked/fields") || there("asked/fake_sweep.pvd"));
 }
 
-/* A folder that cannot be written to stops the sweep with a message, not with a crash. */
-TEST(test_bad_folder)
-{
-  double z;
-  char name[700];
-  plain_design(DEA_FIELDS_ALL);
-  snprintf(name, sizeof name, "%s/bad", folder);
-  assert_int_equal(mkdir(name, 0777), 0);
-  FILE *file = fopen(in_folder("bad/fields"), "wb"); // in the way of the folder
-  assert_non_null(file);
-  fclose(file);
-  assert_int_equal(run(ctx, "bad", 3, false, &z), DEA_E_IO);
-  assert_non_null(strstr(dea_context_message(ctx), "bad/fields"));
-}
-
 static void run_twice(struct dea_context *failing)
 {
   double z;

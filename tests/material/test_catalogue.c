@@ -203,20 +203,6 @@ TEST(test_own_directory_goes_first)
   dea_catalogue_destroy(ctx, entry);
 }
 
-TEST(test_unknown_name_lists_all)
-{
-  struct dea_catalogue_entry *entry;
-  const struct dea_location location = {"x.yaml", 3, 4};
-  assert_int_equal(dea_catalogue_read(ctx, "elastosil-203", location, &entry), DEA_E_DESIGN);
-  assert_null(entry);
-  size_t count;
-  const struct dea_finding *findings = dea_finding_get(ctx, &count);
-  assert_int_equal(count, 1);
-  assert_int_equal(findings[0].location.line, 3);
-  assert_contains(findings[0].text, "did you mean 'elastosil-2030'?");
-  assert_contains(findings[0].text, "vhb-4910");
-}
-
 TEST(test_names_do_not_leave_the_directories)
 {
   static const char *const names[] = {"../materials/pet", "/etc/passwd", ".", "", "a/b"};

@@ -164,18 +164,6 @@ TEST(test_principal_form_by_complex_step)
   for_each_law(check_principal_step);
 }
 
-/* An Ogden term with alpha = 0 does no work, and an absent term is one with mu = 0. */
-TEST(test_ogden_term_with_zero_exponent)
-{
-  const struct dea_law *ogden = dea_law_find("ogden");
-  const double one[DEA_LAW_PARAM_MAX] = {40e3, 2.0};
-  const double two[DEA_LAW_PARAM_MAX] = {40e3, 2.0, 7e3, 0.0, 0.0, 3.0};
-  double w, w1, w2, v, v1, v2;
-  assert_int_equal(ogden->principal(one, 1.7, &w, &w1, &w2), DEA_OK);
-  assert_int_equal(ogden->principal(two, 1.7, &v, &v1, &v2), DEA_OK);
-  assert_true(w == v && w1 == v1 && w2 == v2);
-}
-
 /* The published expansion of the ground-state modulus, in a form that the code does not use. */
 TEST(test_arruda_boyce_ground_state)
 {

@@ -353,27 +353,6 @@ TEST(test_isotropy)
   for_each_law(check_isotropy);
 }
 
-static void check_symmetry(const struct dea_law *law, const double *param)
-{
-  uint64_t seed = 6;
-  for (int n = 0; n < SAMPLE_COUNT; n++) {
-    double F[9], fibre[3], transposed[81];
-    random_gradient(&seed, F);
-    random_direction(&seed, fibre);
-    struct dea_point point;
-    assert_int_equal(dea_point_elastic(law, param, F, fibre, &point), DEA_OK);
-    for (size_t i = 0; i < 81; i++) {
-      transposed[i] = point.A[9 * (i % 9) + i / 9];
-    }
-    assert_all_close(law->name, point.A, transposed, 81, 1e-14, largest(point.A, 81));
-  }
-}
-
-TEST(test_major_symmetry)
-{
-  for_each_law(check_symmetry);
-}
-
 /* At F = 1: W = 0 and P is a pressure; in small shear across the fibre P12 = G gamma. */
 static void check_reference(const struct dea_law *law, const double *param)
 {

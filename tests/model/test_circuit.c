@@ -68,24 +68,6 @@ TEST(test_disconnected)
   }
 }
 
-TEST(test_leakage)
-{
-  const double G = 1e-11; // C/G = 20 s
-  const struct dea_circuit open = {1e18, INFINITY};
-  const struct dea_circuit_film film = {.capacitance_F = C, .conductance_S = G};
-  struct dea_circuit_state now = {.voltage_V = 4000,
-                                  .charge_C = 4000 * C,
-                                  .capacitance_F = C,
-                                  .conductance_S = G,
-                                  .current_A = -4e-15};
-  for (int i = 0; i < 40; i++) {
-    const struct dea_time_step step = {.length_s = 0.5, .source_voltage_V = 0};
-    dea_circuit_advance(&open, &now, &step, &film, &now);
-  }
-  assert_close(now.voltage_V, 4000 * exp(-1), 0, 0.01);
-  assert_close(now.leakage_loss_J, 0.5 * C * 16e6 * (1 - exp(-2)), 0, 1e-3 * 0.5 * C * 16e6);
-}
-
 /* 10 uA into 0.2 nF: 50 V/ms, with and without resistance. */
 TEST(test_current_limit)
 {

@@ -71,39 +71,6 @@ TEST(test_probability_of_breakdown)
   }
 }
 
-TEST(test_without_fibres_there_is_no_lift)
-{
-  struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 0);
-  struct dea_model *model = make(&device);
-  struct dea_load_point p = solve(model, 5e3);
-  assert_true(isnan(p.centre_z_m) && isnan(p.fibre_tip_z_m) && isnan(p.force_N));
-  assert_true(dea_load_point_trusted(&p));
-  dea_model_find("lumped")->destroy(ctx, model);
-}
-
-/* What no device has is refused by every model that has it, in place of a division by it. */
-TEST(test_devices_that_cannot_be)
-{
-  static const char *const names[] = {"lumped", "axisymmetric"};
-  const struct dea_device good = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 4);
-  struct dea_device bad[] = {good, good, good, good, good, good, good};
-  assert_int_equal(dea_device_check(ctx, &good), DEA_OK);
-  bad[0].coverage = 0;
-  bad[1].coverage = 1;
-  bad[2].coverage = (double)NAN;
-  bad[3].electrode_radius_m = bad[3].frame_radius_m;
-  bad[4].pre_stretch = 0;
-  bad[5].film_thickness_unstretched_m = -1e-4;
-  bad[6].fibre_length_m = 0;
-  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-    for (size_t k = 0; k < 2; k++) {
-      struct dea_model *model = NULL;
-      assert_int_equal(dea_model_find(names[k])->create(ctx, &bad[i], NULL, &model), DEA_E_DESIGN);
-      assert_null(model);
-    }
-  }
-}
-
 /* At rest the film is taut with the pre-stretch's own tension, and nothing has moved. */
 TEST(test_rest_state)
 {
@@ -152,17 +119,6 @@ TEST(test_balance_derivatives)
     assert_close(at.slope_field_Pa_m_per_V, (up.imbalance_Pa - down.imbalance_Pa) / (2 * d * field),
                  1e-8, 0);
   }
-}
-
-TEST(test_balance_outside_its_domain)
-{
-  const struct dea_material m = test_yeoh();
-  struct dea_material copy;
-  struct dea_lumped lumped = sample(&m, 0, &copy);
-  struct dea_lumped_balance at;
-  assert_int_equal(dea_lumped_balance_eval(&lumped, 0, 0, &at), DEA_E_DOMAIN);
-  assert_int_equal(dea_lumped_balance_eval(&lumped, 1 / 0.3, 0, &at), DEA_E_DOMAIN);
-  assert_int_equal(dea_lumped_balance_eval(&lumped, NAN, 0, &at), DEA_E_DOMAIN);
 }
 
 /* Energy of the active disc and what stretches with it, at height z of the tip. */
@@ -265,18 +221,6 @@ TEST(test_random_designs)
     }
   }
   assert_true(without > 0); // otherwise the test has not seen pull-in
-}
-
-/* Thickness and voltage together change nothing: 100 um at V is 200 um at 2 V. */
-TEST(test_scaling_with_thickness)
-{
-  struct dea_device thin = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 0), thick = thin;
-  thick.film_thickness_unstretched_m *= 2;
-  thick.film_thickness_m *= 2;
-  struct dea_model *a = make(&thin), *b = make(&thick);
-  assert_close(solve(a, 5e3).electrode_stretch, solve(b, 1e4).electrode_stretch, 1e-12, 0);
-  dea_model_find("lumped")->destroy(ctx, a);
-  dea_model_find("lumped")->destroy(ctx, b);
 }
 
 TESTS(context_set_up, context_tear_down)

@@ -294,41 +294,7 @@ TEST(test_energy)
   }
 }
 
-/* A charged film that is cut off keeps its charge but for what leaks, whatever its shape does. */
-TEST(test_leakage_of_an_open_film)
-{
-  struct dea_device device = whole();
-  const struct dea_time_options options = {{1e16, INFINITY}, NULL, false, 0.8};
-  const struct dea_model_type *type = dea_model_find("lumped");
-  struct dea_model *model;
-  struct dea_load_point p;
-  assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
-  assert_int_equal(type->solve(ctx, model, 5000, &p), DEA_OK);
-  assert_int_equal(type->begin(ctx, model, &options, &p), DEA_OK);
-  double first_C = p.charge_C, first_J = p.stored_energy_J, tau = 2e10 * 2.8 * DEA_EPSILON_0;
-  assert_close(first_C, 5000 * p.capacitance_F, 1e-12, 0);
-  for (int i = 0; i < 200; i++) {
-    assert_int_equal(go(model, 0.01, 0, &p), DEA_OK);
-  }
-  assert_close(p.charge_C, first_C * exp(-2 / tau), 1e-3, 0);
-  assert_close(first_J - p.stored_energy_J, p.dissipated_J, 1e-3, 0);
-  end(model);
-}
-
 // Small things ------------------------------------------------------------------------------------
-
-TEST(test_at_rest)
-{
-  struct dea_device device = whole();
-  struct dea_model *model = begin(&device, &quiet);
-  struct dea_load_point p;
-  for (int i = 0; i < 50; i++) {
-    assert_int_equal(go(model, 0.01 * (i + 1) * i, 0, &p), DEA_OK);
-    assert_close(p.electrode_stretch, 1, 0, 1e-14);
-    assert_close(p.dissipated_J, 0, 0, 1e-20);
-  }
-  end(model);
-}
 
 /* Asking for another step instead of accepting leaves no trace. */
 TEST(test_rejected_steps)

@@ -7,7 +7,6 @@
 #include "io/results_h5.h"
 #include "job/report_runs.h"
 #include "job/run_folder.h"
-#include "plot/axis.h"
 #include "plot/plot.h"
 #include "plot/plot_svg.h"
 
@@ -50,11 +49,6 @@ static void plain_label(struct dea_text *out, const char *text)
 static void json_label(struct dea_text *out, const char *text)
 {
   dea_html_label(out, text, DEA_LABEL_JSON);
-}
-
-static void base64(struct dea_text *out, const char *text)
-{
-  dea_html_base64(out, text, strlen(text));
 }
 
 static void assert_writes(writer write, const char *text, const char *wanted)
@@ -103,21 +97,6 @@ TEST(test_escaping)
   assert_writes(json_label, "</script>\n\"\302\265", "\\u003c/script\\u003e\\u000a\\u0022\302\265");
 }
 
-TEST(test_base64)
-{
-  // RFC 4648, section 10
-  static const char *const pairs[][2] = {{"", ""},
-                                         {"f", "Zg=="},
-                                         {"fo", "Zm8="},
-                                         {"foo", "Zm9v"},
-                                         {"foob", "Zm9vYg=="},
-                                         {"fooba", "Zm9vYmE="},
-                                         {"foobar", "Zm9vYmFy"}};
-  for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
-    assert_writes(base64, pairs[i][0], pairs[i][1]);
-  }
-}
-
 TEST(test_labels)
 {
   assert_writes(plain_label, "Voltage {/:Italic V} (kV)", "Voltage V (kV)");
@@ -130,26 +109,6 @@ TEST(test_labels)
   // within a script element entities are letters, and a line's end would end the JSON
   assert_writes(json_label, "a & \"b\"\n</script>_{x}",
                 "a \\u0026 \\u0022b\\u0022\\u000a\\u003c/script\\u003ex");
-}
-
-TEST(test_axes)
-{
-  const double open[2] = {NAN, NAN}, closed[2] = {0, 8};
-  struct dea_axis axis = dea_axis_create(-3.2, 41, open, false, 7);
-  axis.at_high = 100;
-  double value;
-  assert_true(dea_axis_tic(&axis, 0, &value));
-  assert_close(value, -10, 1e-12, 0);
-  assert_close(axis.high, 50, 1e-12, 0);
-  assert_close(dea_axis_place(&axis, 20), 50, 1e-12, 0);
-  axis = dea_axis_create(0, 3, closed, false, 8);
-  assert_close(axis.high, 8, 0, 0);
-  assert_true(dea_axis_tic(&axis, 8, &value) && !dea_axis_tic(&axis, 9, &value));
-  axis = dea_axis_create(5, 5, open, false, 5); // one value alone still has room around it
-  assert_true(axis.low < 5 && axis.high > 5);
-  axis = dea_axis_create(0.02, 30, open, true, 5);
-  assert_close(axis.low, 0.01, 1e-12, 0);
-  assert_close(axis.high, 100, 1e-12, 0);
 }
 
 // The page ----------------------------------------------------------------------------------------
@@ -240,49 +199,6 @@ static const char evil[] =
     "    permittivity: [{id: one, at_rest: 2.8, source: '<b>bold</b>'}]\n"
     "compute: {models: [lumped, axisymmetric], voltage: {from: 0 kV, to: 2 kV, step: 0.5 kV}}\n";
 
-/* The path of the panel's band, as text. */
-static const char *band_of(struct dea_plot *plot, struct dea_text *out)
-{
-  dea_text_free(out);
-  *out = (struct dea_text){.ctx = ctx};
-  dea_plot_add_svg(out, plot, 1);
-  char *at = strstr(dea_text_get(out), "<path class=\"band");
-  assert_non_null(at);
-  *strstr(at, "/>") = '\0';
-  return at;
-}
-
-/* A narrow band that begins at the top of its panel stays narrow; one to the top goes there. */
-TEST(test_bands)
-{
-  static const double y[] = {0, -1, -100}, error[] = {0, 0.5, 2};
-  struct dea_text out = {.ctx = ctx};
-  struct dea_plot *plot;
-  struct dea_series *band;
-  assert_int_equal(dea_plot_create(ctx, "bands", "bands", &plot), DEA_OK);
-  assert_int_equal(dea_panel_add(ctx, &plot->panels[0], 3, DEA_BAND, DEA_BLUE, "", &band), DEA_OK);
-  for (size_t i = 0; i < 3; i++) {
-    band->values[i] = (double)i;
-    band->values[3 + i] = y[i] - error[i];
-    band->values[6 + i] = y[i] + error[i];
-  }
-  double lower[3], upper[3], x[6];
-  for (int to_top = 0; to_top < 2; to_top++) {
-    band->to_top = to_top == 1;
-    assert_int_equal(sscanf(strstr(band_of(plot, &out), " d=\"") + 4,
-                            "M%lf %lfL%lf %lfL%lf %lfL%lf %lfL%lf %lfL%lf %lf", &x[0], &lower[0],
-                            &x[1], &lower[1], &x[2], &lower[2], &x[3], &upper[2], &x[4], &upper[1],
-                            &x[5], &upper[0]),
-                     12);
-    double scale = (lower[2] - lower[0]) / 102;
-    assert_close(x[3], x[2], 0, 1e-9);
-    assert_close(lower[1] - upper[1], to_top == 1 ? lower[1] - upper[0] : scale, 0, 0.11);
-    assert_close(lower[2] - upper[2], to_top == 1 ? lower[2] - upper[0] : 4 * scale, 0, 0.11);
-  }
-  dea_text_free(&out);
-  dea_plot_destroy(ctx, plot);
-}
-
 TEST(test_text_of_a_design_is_text)
 {
   command_write("evil.yaml", evil);
@@ -356,60 +272,6 @@ TEST(test_sections_of_studies)
   assert_contains(designs, "<tr><td>plain-disc</td>");
   const char *flags = strstr(designs, "what a reader has to know of these numbers\">flags</th>");
   assert_true(flags != NULL && strstr(flags, "<td>breakdown bound plain</td>") != NULL);
-}
-
-/* Copies what the page has of its section map up to its section explorer. */
-static char *copy_map_and_touch(void)
-{
-  const char *from = strstr(page, "<section id=\"map-1\""),
-             *to = strstr(page, "<section id=\"explorer-1\"");
-  assert_true(from != NULL && to > from);
-  char *copy = calloc(1, (size_t)(to - from) + 1);
-  assert_non_null(copy);
-  return memcpy(copy, from, (size_t)(to - from));
-}
-
-/* The map of a run that has one is its own; of one that lacks it it is made for the page, and looks
- * the same; of fibres it is left out beside a model that predicts how far they move. */
-TEST(test_studies_of_the_run_or_of_the_page)
-{
-  assert_int_equal(
-      command_run("run @/examples/frdea-4.yaml --no-figures --set "
-                  "'compute.voltage={from: 0 kV, to: 4 kV, step: 2 kV}' --model lumped "
-                  "--study path --study sweep -o without.run"),
-      0);
-  assert_int_equal(
-      command_run("run @/examples/frdea-4.yaml --no-figures --set "
-                  "'compute.voltage={from: 0 kV, to: 4 kV, step: 2 kV}' --model lumped "
-                  "--study path --study sweep --study operating-map -o with.run"),
-      0);
-  assert_int_equal(command_run("report without.run"), 0);
-  read_page("without.run/report.html");
-  char *made = copy_map_and_touch();
-  assert_int_equal(command_run("report with.run"), 0);
-  read_page("with.run/report.html");
-  char *own = copy_map_and_touch();
-  assert_string_equal(made, own);
-  assert_contains(own, "breakdown above");
-  free(made);
-  free(own);
-  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --model lumped --model 3d "
-                               "--study sweep -o both.run --set "
-                               "'compute.voltage={from: 0 kV, to: 1 kV, step: 1 kV}'"),
-                   0);
-  assert_null(strchr(command_out, '<')); // nor is its bound of z
-  assert_int_equal(command_run("report both.run"), 0);
-  read_page("both.run/report.html");
-  assert_null(strstr(page, "<section id=\"map-1\""));
-  assert_null(strstr(page, "fibre tip, at most"));
-  // nor beside another run that predicts it
-  assert_int_equal(command_run("report without.run both.run -o beside.html --quiet"), 0);
-  read_page("beside.html");
-  const char *last = strstr(page, "Last point of every sweep");
-  const char *lumped = last != NULL ? strstr(last, "<td>lumped</td><td class=\"n\">4</td>") : NULL;
-  assert_non_null(lumped);
-  const char *z = strstr(lumped, "\342\200\223</td><td class=\"n\">\342\200\223</td>");
-  assert_true(z != NULL && z < strstr(lumped, "</tr>"));
 }
 
 TEST(test_runs_beside_each_other)
@@ -514,39 +376,6 @@ static void write_made_up_run(void)
   assert_int_equal(fake_result(ctx, &design, 1.0, &result), DEA_OK);
   assert_int_equal(dea_results_h5_write(ctx, result, in_folder("made-up.h5")), DEA_OK);
   dea_result_destroy(ctx, result);
-}
-
-/* What study frequency found is said at 10 Hz, straight between its points; without it that it was
- * not asked. */
-TEST(test_touch_at_its_frequency)
-{
-  static const double hertz[3] = {1, 5, 15}, amplitude_m[3] = {2e-9, 1.9e-9, 1.7e-9};
-  struct dea_run *run;
-  struct dea_curve *curve;
-  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --set "
-                               "'compute.voltage={values: [0 kV, 4 kV]}' -o t.run"),
-                   0);
-  assert_int_equal(command_run("report t.run"), 0);
-  read_page("t.run/report.html");
-  assert_contains(page, "says nothing of 5 to 10 Hz");
-  assert_contains(page, "not known: an upper bound, which model 3d replaces");
-  assert_int_equal(dea_run_read(ctx, in_folder("t.run"), &run), DEA_OK);
-  assert_int_equal(dea_result_add_curve(ctx, run->result, "lumped", "frequency", &curve), DEA_OK);
-  for (int i = 0; i < 3; i++) {
-    struct dea_load_point point = dea_load_point_empty();
-    point.voltage_V = 3e3;
-    point.frequency_Hz = hertz[i];
-    point.ripple_V = 1;
-    point.centre_amplitude_m = amplitude_m[i];
-    assert_int_equal(dea_curve_add_point(ctx, curve, &point), DEA_OK);
-  }
-  curve->complete = true;
-  assert_int_equal(dea_run_folder_write(ctx, run->result, in_folder("u.run"), NULL), DEA_OK);
-  dea_run_destroy(ctx, run);
-  assert_int_equal(command_run("report u.run"), 0);
-  read_page("u.run/report.html");
-  assert_contains(page, "about 3 kV the centre follows at 10 Hz by 0.9 times its motion at 1 Hz");
-  assert_well_formed();
 }
 
 TEST(test_design_that_is_gone)

@@ -93,19 +93,6 @@ TEST(test_misfit_figures_are_drawn)
   assert_string_equal(command_err, "");
 }
 
-/* An uncertainty without name and unit has those of the column before it. */
-TEST(test_uncertainty_of_the_column_before)
-{
-  command_write("t.csv", "V (kV),z centre (mm),z centre err (mm)\n0,0,0.01\n1,1.5,0.2\n");
-  assert_int_equal(command_run("compare a t.csv --json"), 0);
-  char *named = strdup(command_out);
-  assert_non_null(named);
-  command_write("t.csv", "V (kV),Displacement (mm),err\n0,0,0.01\n1,1.5,0.2\n");
-  assert_int_equal(command_run("compare a t.csv --json"), 0);
-  assert_string_equal(command_out, named);
-  free(named);
-}
-
 /* A run of a device made of plies, with a hub that rises by scale x 1 um at each kV, does not turn,
  * and stands secondary by less than the solver knows; slack from 2 kV on. */
 static void make_device_run(const char *name, double scale)

@@ -23,26 +23,6 @@ static int after(void **state)
   return 0;
 }
 
-TEST(test_empty_point_is_nan_everywhere)
-{
-  struct dea_load_point p = dea_load_point_empty();
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    assert_true(isnan(dea_point_get(&p, c)));
-  }
-  assert_true(p.stable);
-  assert_int_equal(p.unstable_modes, 0);
-}
-
-TEST(test_columns_reach_their_members)
-{
-  struct dea_load_point p = dea_load_point_empty();
-  dea_point_set(&p, dea_point_column_find("force_N"), 0.25);
-  assert_close(p.force_N, 0.25, 0, 0);
-  assert_true(isnan(p.energy_J));
-  assert_int_equal(dea_point_column_find("force"), -1);
-  assert_int_equal(dea_point_column_find("voltage_V"), 0);
-}
-
 /* A number that is off by a hair on either side of where its flag begins. */
 TEST(test_flags_begin_where_they_say)
 {
@@ -115,22 +95,6 @@ TEST(test_trust_ends_at_the_lowest_doubt)
   dea_text_free(&text);
 }
 
-TEST(test_curves_grow_and_are_found)
-{
-  struct dea_curve *curve;
-  assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "sweep", &curve), DEA_OK);
-  for (int i = 0; i < 1000; i++) {
-    struct dea_load_point p = dea_load_point_empty();
-    p.voltage_V = i;
-    assert_int_equal(dea_curve_add_point(ctx, curve, &p), DEA_OK);
-  }
-  assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "path", &curve), DEA_OK);
-  const struct dea_curve *found = dea_result_find(result, "lumped", "sweep");
-  assert_int_equal(found->count, 1000);
-  assert_close(found->points[999].voltage_V, 999.0, 0, 0);
-  assert_null(dea_result_find(result, "axisymmetric", "sweep"));
-}
-
 TEST(test_names_are_checked)
 {
   struct dea_curve *curve;
@@ -144,19 +108,6 @@ TEST(test_names_are_checked)
   assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "sweep", &curve), DEA_E_ARGUMENT);
   assert_null(curve);
   assert_int_equal(result->curve_count, 1);
-}
-
-TEST(test_profiles_are_copied)
-{
-  struct dea_design design = fake_design();
-  struct dea_result *made = NULL;
-  assert_int_equal(fake_result(ctx, &design, 1.0, &made), DEA_OK);
-  assert_int_equal(made->profile_count, 6);
-  const struct dea_profile_record *last = &made->profiles[5];
-  assert_close(last->voltage_V, 5000.0, 0, 0);
-  assert_close(last->columns[30], 15e-3, 1e-15, 0);           // radius at the frame
-  assert_close(last->columns[4 * 31], 35.0 - 15.0, 1e-15, 0); // radial tension at the centre
-  dea_result_destroy(ctx, made);
 }
 
 TEST(test_sha256_of_a_known_text)
@@ -251,24 +202,6 @@ TEST(test_compare_interpolates_between_voltages)
   // The other way round the same six voltages are used, with the sign turned.
   assert_int_equal(dea_compare_curves(&memory, b, a, NULL, NULL, 0, &c), DEA_OK);
   assert_int_equal(c.misfits[0].count, 6);
-  dea_arena_free(&memory);
-}
-
-TEST(test_compare_reports_nothing_in_common)
-{
-  struct dea_comparison c;
-  struct dea_arena memory = {.ctx = ctx};
-  parabola("a", 11, 5000.0, 0.0);
-  parabola("b", 11, 5000.0, 0.0);
-  for (size_t i = 0; i < 11; i++) {
-    result->curves[1].points[i].voltage_V += 6000.0;
-  }
-  const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
-  assert_int_equal(dea_compare_curves(&memory, a, b, NULL, NULL, 0, &c), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "nothing to compare"));
-  int force = dea_point_column_find("force_N");
-  assert_int_equal(dea_compare_curves(&memory, a, a, NULL, &force, 1, &c), DEA_E_ARGUMENT);
-  assert_string_equal(dea_context_message(ctx), "neither of the two has force_N");
   dea_arena_free(&memory);
 }
 

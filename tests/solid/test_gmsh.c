@@ -171,42 +171,6 @@ TEST(test_rows)
   dea_plane_mesh_destroy(ctx, mesh);
 }
 
-/* A wide strip from the electrode's edge outwards, whose end leaves a crescent within it, .1 mm
- * thick. With an end that touches the electrode in a point nothing can be done: what is said
- * names both. */
-TEST(test_crescent)
-{
-  if (!has_gmsh()) {
-    skip();
-  }
-  for (int i = 0; i < 2; i++) {
-    double x = i == 0 ? 3.65e-3 : 3.75e-3;
-    const struct dea_vertex wide_vertex[] = {{.x_m = x, .y_m = -1e-3},
-                                             {.x_m = 14e-3, .y_m = -1e-3},
-                                             {.x_m = 14e-3, .y_m = 1e-3},
-                                             {.x_m = x, .y_m = 1e-3}};
-    const struct dea_contour wide = {wide_vertex, 4, true};
-    const struct dea_gmsh_shape crescent[] = {{"film", film_contours, 1, 0, 0, false},
-                                              {"electrode", &electrode, 1, 0.5e-3, 0, false},
-                                              {"wide", &wide, 1, 0.5e-3, 0, false}};
-    struct dea_gmsh_plan other = plan;
-    other.shapes = crescent;
-    other.curve_count = 0;
-    struct dea_plane_mesh *mesh;
-    dea_status status = dea_gmsh_mesh(ctx, &other, &mesh);
-    if (i == 0) {
-      assert_int_equal(status, DEA_OK);
-      assert_true(dea_plane_mesh_smallest_jacobian(mesh, NULL) > 0.05);
-      assert_close(area_within(mesh, "electrode"), pi * a * a, 1e-3, 0);
-      assert_close(area_within(mesh, "wide"), 10.35e-3 * 2e-3, 1e-6, 0);
-    } else {
-      assert_int_equal(status, DEA_E_TOOL);
-      assert_non_null(strstr(dea_context_message(ctx), "by edges of 'electrode', 'wide', is too"));
-    }
-    dea_plane_mesh_destroy(ctx, mesh);
-  }
-}
-
 // Faults -----------------------------------------------------------------------------------------
 
 /* A gmsh that is a shell script. */

@@ -59,10 +59,8 @@ static struct dea_device *rectangle_new(void)
   add_rectangle(device, "film", 0, 0, 10e-3, 10e-3);
   add_rectangle(device, "active", 2e-3, 3e-3, 5e-3, 4e-3);
   add_film(device, 0, 1.3, 1.1);
-  add_electrode(device, 0, false, 1, 0);
-  add_electrode(device, 0, true, 1, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  add_electrodes(device, 0, 1);
+  hold_edge(device, 0, DEA_LAYOUT_NONE, 7);
   const struct dea_layout_monitor monitors[] = {
       {.name = "corner", .kind = DEA_MONITOR_POINT, .at_m = {{7e-3, 7e-3}}},
       {.name = "side", .kind = DEA_MONITOR_POINT, .at_m = {{7e-3, 5e-3}}},
@@ -183,30 +181,6 @@ TEST(test_blocks_and_free)
   dea_device_destroy(ctx, device);
 }
 
-/* A tip that is pressed 2 mm into the middle takes the same force of both. */
-TEST(test_tip_on_blocks_and_free)
-{
-  only_nightly();
-  static const struct dea_probe tip = {.radius_m = 3e-3, .from_fibre_side = true};
-  const struct dea_device blocks = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
-  struct dea_device *device = disc_new(blocks.frame_radius_m, 3.75e-3, 1.5);
-  const struct dea_device *const both[2] = {&blocks, device};
-  const struct dea_model_type *type = dea_model_find("3d");
-  struct dea_load_point point;
-  double force_N[2];
-  for (int i = 0; i < 2; i++) {
-    struct dea_model *model;
-    assert_int_equal(type->create(ctx, both[i], NULL, &model), DEA_OK);
-    assert_int_equal(type->solve(ctx, model, 2e3, &point), DEA_OK);
-    assert_int_equal(type->indent(ctx, model, &tip, 2e-3, &point), DEA_OK);
-    assert_close(point.lowest_z_m, -2e-3, 0.01, 0);
-    force_N[i] = point.force_N;
-    type->destroy(ctx, model);
-  }
-  assert_close(force_N[1], force_N[0], 0.01, 0);
-  dea_device_destroy(ctx, device);
-}
-
 /* A body that is held has no error, a device without a monitor of that name no mesh. */
 TEST(test_refused)
 {
@@ -220,21 +194,6 @@ TEST(test_refused)
   struct dea_model *model;
   assert_int_equal(type->create(ctx, device, &settings, &model), DEA_E_DESIGN);
   assert_non_null(strstr(dea_context_message(ctx), "no monitor 'rim'"));
-  dea_device_destroy(ctx, device);
-}
-
-/* A free mesh has no order 3 in the plane, and says so; of 2 there is nothing to say. */
-TEST(test_order)
-{
-  struct dea_device *device = rectangle_new();
-  const struct dea_model_type *type = dea_model_find("3d");
-  for (int order = 2; order <= 3; order++) {
-    const struct dea_model_settings settings = {.order = order};
-    struct dea_model *model;
-    assert_int_equal(type->create(ctx, device, &settings, &model), DEA_OK);
-    assert_true((find_finding(ctx, DEA_WARNING, "compute.solid.order: 3") != NULL) == (order == 3));
-    type->destroy(ctx, model);
-  }
   dea_device_destroy(ctx, device);
 }
 

@@ -578,53 +578,6 @@ TEST(test_tension_of_a_bender)
   end(&at);
 }
 
-/* With all lengths and the voltage s times as large every displacement is s times what it was,
- * fields and margins stay, forces by length are s times, capacitance too, and the energy s^3: so
- * slopes by the lengths times these sum up. The shape of the support is beyond the strip, and its
- * slopes are not known. */
-TEST(test_all_lengths)
-{
-  static const double powers[FREQUENCY] = {1, 0, 0, 1, 1, 3};
-  struct dea_design_number numbers[DEA_NUMBERS_MAX];
-  struct at at = {.voltage_V = 500, .monitor_count = 1, .motion = {DEA_OBSERVED_Z}, .asked = true};
-  double base[WIDTH], sum[WIDTH] = {0}, slopes[DEA_NUMBERS_MAX * WIDTH];
-  int columns[FREQUENCY];
-  size_t count;
-  assert_int_equal(read_and_build(ctx, bender, NULL, 0, &at.design, &at.device), DEA_OK);
-  solve(&at, at.device, at.voltage_V, base);
-  assert_int_equal(
-      dea_design_numbers(ctx, at.design, at.device, at.voltage_V, false, numbers, &count), DEA_OK);
-  for (int k = 0; k < FREQUENCY; k++) {
-    columns[k] = dea_point_column_find(keys[k]);
-  }
-  const struct dea_design_gradient ask = {.type = dea_model_find("3d"),
-                                          .model = at.model,
-                                          .design = at.design,
-                                          .device = at.device,
-                                          .voltage_V = at.voltage_V,
-                                          .numbers = numbers,
-                                          .number_count = count,
-                                          .columns = columns,
-                                          .column_count = FREQUENCY,
-                                          .monitors = at.monitors,
-                                          .monitor_count = 1,
-                                          .motions = at.motion};
-  assert_int_equal(dea_design_gradient_find(ctx, &ask, slopes), DEA_OK);
-  for (size_t i = 0; i < count; i++) {
-    const bool scales = strcmp(numbers[i].unit, "m") == 0 || strcmp(numbers[i].unit, "V") == 0;
-    for (size_t k = 0; k < FREQUENCY + 1 && scales; k++) {
-      sum[k] += numbers[i].value * slopes[i * (FREQUENCY + 1) + k];
-    }
-  }
-  for (int k = 0; k < FREQUENCY + 1; k++) {
-    const double power = k < FREQUENCY ? powers[k] : 1;
-    // rounding leaves a few 1e-6 of a displacement in each slope (docs/theory/gradients.md)
-    const double value = base[k < FREQUENCY ? k : KEYS]; // or of the monitor
-    assert_close(sum[k], power * value, 0, 2e-5 * fabs(value) + 1e-12);
-  }
-  end(&at);
-}
-
 /* What the mesh of the device does not follow, and what it does. */
 TEST(test_what_cannot_follow)
 {
@@ -827,33 +780,6 @@ static const char strut[] =
     "compute:\n"
     "  voltage: {to: 2 kV, step: 1 kV}\n";
 
-/* By Euler's formula for a film between clamps, N = mu pi^2 h^3 / L^2, that the field presses
- * together by N = eps V^2 / (2 h): V = pi h^2 / L sqrt(2 mu / eps), and of a pre-stretch, mu h 3
- * dlambda of N, dV = 3 mu h^2 / (eps V) dlambda, both to the part h / L. A strip of s times the
- * size, or s times the modulus, buckles at a voltage that all of its slopes know. */
-TEST(test_buckling_of_a_strip)
-{
-  only_nightly();
-  enum { VOLTAGE, THICKNESS, STRETCH, MU, PERMITTIVITY, OF_SHAPES, SHAPES = 8 };
-  static const double of_shapes[SHAPES] = {8e-3, 2e-3, -4e-3, 0.2e-3, 3e-3, 4e-3, 0.2e-3, 3e-3};
-  static const char *const only[] = {"plies.film.thickness", "shapes.strip.width", NULL};
-  const double h = 200e-6, L = 8e-3, mu = 100e3, eps = 3 * 8.8541878128e-12, pi = acos(-1);
-  const double wanted_V = pi * h * h / L * sqrt(2 * mu / eps), part = 0.03;
-  struct at at = {.voltage_V = 500, .only = only};
-  double V, by[DEA_NUMBERS_MAX], larger = 0;
-  assert_int_equal(read_and_build(ctx, strut, NULL, 0, &at.design, &at.device), DEA_OK);
-  assert_int_equal(check_critical(&at, DEA_EVENT_BUCKLING, &V, by), OF_SHAPES + SHAPES);
-  assert_close(V, wanted_V, part, 0);
-  assert_close(by[STRETCH], 3 * mu * h * h / (eps * V), 2 * part, 0);
-  for (int i = 0; i < SHAPES; i++) {
-    larger += by[OF_SHAPES + i] * of_shapes[i];
-  }
-  assert_close(larger + by[THICKNESS] * h, V, 1e-5, 0);
-  assert_close(by[MU] * mu, V / 2, 1e-6, 0);
-  assert_close(by[PERMITTIVITY] * 3, -V / 2, 1e-6, 0);
-  end(&at);
-}
-
 /* Held along its sides (y) and guided at its ends, which turn as little as their bottom edges move:
  * a slab of that has an exact mode. */
 static const char supports_of_slab[] = "[{edge: strip, hold: [y]},"
@@ -931,5 +857,4 @@ TEST(test_buckling_of_a_slab)
   end(&at);
 }
 
-#include <stdio.h>
 TESTS(context_set_up, context_tear_down)

@@ -129,28 +129,6 @@ static const struct {
 } hung[] = {{0, 1.8179}, {2, 1.9290}, {3, 2.0871}, {4, 2.3529}, {5, 2.7982}};
 static const double rounded = 0.6e-4; // of the table
 
-TEST(test_hung)
-{
-  struct dea_device *device = cone_new();
-  struct dea_layout *l = device->layout;
-  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 1};
-  struct dea_model *model;
-  l->bodies[0].free = 4;
-  l->bodies[0].mass_kg = 20e-3;
-  l->gravity_m_per_s2[2] = DEA_STANDARD_GRAVITY_M_PER_S2;
-  l->plies[0].material.density_kg_per_m3 = 1e-3; // the table knows no weight of the film
-  assert_int_equal(dea_model_find("3d")->create(ctx, device, &settings, &model), DEA_OK);
-  for (size_t i = 0; i < sizeof hung / sizeof hung[0]; i++) {
-    struct dea_load_point at;
-    struct dea_observation seen;
-    assert_int_equal(dea_model_find("3d")->solve(ctx, model, 1e3 * hung[i].kV, &at), DEA_OK);
-    assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
-    assert_close(1e3 * seen.body[0][DEA_OBSERVED_Z], hung[i].shift_mm, 1e-4, rounded);
-  }
-  dea_model_find("3d")->destroy(ctx, model);
-  dea_device_destroy(ctx, device);
-}
-
 /* The same by a force that is raised at each voltage. */
 TEST(test_pushed)
 {
@@ -237,13 +215,10 @@ static void check_diaphragm(size_t elements)
   dea_region_add_circle(add_region(device, "film"), 0, 0, a, false, nowhere);
   add_film(device, 0, l, l);
   layout->plies[0].elements = elements;
-  add_electrode(device, 0, false, 0, 0);
-  add_electrode(device, 0, true, 0, 1);
-  layout->supports[layout->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  add_electrodes(device, 0, 0);
+  hold_edge(device, 0, DEA_LAYOUT_NONE, 7);
   layout->pressures[layout->pressure_count++] = (struct dea_layout_pressure){.pressure_Pa = 5};
-  layout->monitors[layout->monitor_count++] =
-      (struct dea_layout_monitor){.name = "middle", .kind = DEA_MONITOR_POINT};
+  add_point(device, "middle", 0, 0);
   struct ran r = run(
       device, "{pressure_from: 0 Pa, pressure_to: 20 Pa, steps: 2, voltage: [0 kV, 4 kV]}", DEA_OK);
   const struct dea_curve *curve = dea_result_find(r.result, "3d", "loading");
@@ -335,8 +310,7 @@ TEST(test_at_a_rate)
   const size_t left = add_rectangle(device, "left", -10e-3, 0, 2e-3, width_m);
   const size_t between = add_rectangle(device, "between", -8e-3, 0, length_m, width_m);
   add_film(device, 0, 1, 1);
-  add_electrode(device, 0, false, between, 0);
-  add_electrode(device, 0, true, between, 1);
+  add_electrodes(device, 0, between);
   l->supports[l->support_count++] =
       (struct dea_layout_support){.region = left, .within = DEA_LAYOUT_NONE, .components = 7};
   l->supports[l->support_count++] =
@@ -381,13 +355,10 @@ TEST(test_pressure_limit)
     add_film(device, 0, 1, 1);
     layout->plies[0].material.law = dea_law_find("neo-hookean");
     layout->plies[0].material.param[0] = mu;
-    add_electrode(device, 0, false, 0, 0);
-    add_electrode(device, 0, true, 0, 1);
-    layout->supports[layout->support_count++] = (struct dea_layout_support){
-        .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+    add_electrodes(device, 0, 0);
+    hold_edge(device, 0, DEA_LAYOUT_NONE, 7);
     layout->pressures[layout->pressure_count++] = (struct dea_layout_pressure){.pressure_Pa = 5};
-    layout->monitors[layout->monitor_count++] =
-        (struct dea_layout_monitor){.name = "middle", .kind = DEA_MONITOR_POINT};
+    add_point(device, "middle", 0, 0);
     struct ran r = run(device, ways[i], DEA_E_NO_EQUILIBRIUM);
     const char *why = strstr(dea_context_message(ctx), "pressure limit");
     assert_non_null(why);
@@ -433,8 +404,7 @@ TEST(test_free_charge)
     add_film(device, 0, 1, 1);
     l->plies[0].material.law = dea_law_find("neo-hookean");
     l->plies[0].material.param[0] = mu;
-    add_electrode(device, 0, false, 0, 0);
-    add_electrode(device, 0, true, 0, 1);
+    add_electrodes(device, 0, 0);
     const size_t low = add_rectangle(device, "low", -a, -1.5 * a, 2 * a, a);
     const size_t left = add_rectangle(device, "left", -1.5 * a, -a, a, 2 * a);
     const struct dea_layout_support held[] = {
@@ -444,8 +414,7 @@ TEST(test_free_charge)
     };
     l->support_count = whole == 0 ? 1 : 3; // the sides of a sector hold it in the plane
     memcpy(l->supports, held, sizeof held);
-    l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-        .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+    add_film_monitor(device);
     assert_int_equal(dea_layout_find_symmetry(ctx, l), DEA_OK);
     const struct dea_model_settings settings = {.refinement = 1};
     struct dea_model *model = layout_model(device, &settings);
@@ -495,8 +464,7 @@ static void check_charge_of_a_channel(bool held)
                                                                 .within = DEA_LAYOUT_NONE,
                                                                 .components = held ? 7 : 4,
                                                                 .hinged = !held};
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+  add_film_monitor(device);
   assert_int_equal(dea_layout_find_symmetry(ctx, l), DEA_OK);
   const struct dea_model_settings settings = {.refinement = 1};
   struct dea_model *model = layout_model(device, &settings);
@@ -526,64 +494,6 @@ TEST(test_charge_of_a_channel)
 {
   check_charge_of_a_channel(false);
   check_charge_of_a_channel(true);
-}
-
-/* Voltages and charges of a path. */
-struct sunk {
-  size_t count;
-  double voltage_V[400], charge_C[400];
-};
-
-static dea_status sink(void *user, const struct dea_load_point *point)
-{
-  struct sunk *s = user;
-  if (s->count < 400) {
-    s->voltage_V[s->count] = point->voltage_V;
-    s->charge_C[s->count++] = point->voltage_V * point->capacitance_F;
-  }
-  return DEA_OK;
-}
-
-static dea_status no_event(void *user, const struct dea_event *event)
-{
-  return DEA_OK;
-}
-
-/* A disc with a passive annulus up to its pull-in voltage: at equal charges the voltage of the
- * axisymmetric model's path. */
-TEST(test_charge_up_to_pull_in)
-{
-  struct dea_device plain = test_soft_disc();
-  struct dea_device *device = disc_new(plain.frame_radius_m, 2.6e-3, 1.2);
-  struct dea_layout_ply *ply = &device->layout->plies[0];
-  ply->material = plain.film;
-  ply->thickness_m = plain.film_thickness_m;
-  ply->thickness_unstretched_m = plain.film_thickness_unstretched_m;
-  const struct dea_model_type *exact_type = dea_model_find("axisymmetric");
-  const struct dea_path_options options = {1.9, INFINITY, 400, false};
-  struct dea_model *exact;
-  struct sunk path = {0};
-  assert_int_equal(exact_type->create(ctx, &plain, NULL, &exact), DEA_OK);
-  assert_int_equal(exact_type->path(ctx, exact, &options, sink, no_event, &path), DEA_OK);
-  exact_type->destroy(ctx, exact);
-  assert_int_equal(dea_layout_find_symmetry(ctx, device->layout), DEA_OK);
-  const struct dea_model_settings settings = {.refinement = 1};
-  struct dea_model *model = layout_model(device, &settings);
-  const struct dea_model_type *type = dea_model_find("3d");
-  const struct dea_control charge = {.kind = DEA_CONTROL_CHARGE};
-  struct dea_load_point at;
-  assert_int_equal(type->solve(ctx, model, 0, &at), DEA_OK);
-  const size_t every = path.count / 12;
-  double last_V = 0;
-  for (size_t i = every; path.charge_C[i] < 56e-9; i += every) {
-    assert_int_equal(type->move(ctx, model, &charge, path.charge_C[i], &at), DEA_OK);
-    assert_int_equal(at.unstable_modes, 0);
-    assert_close(at.voltage_V, path.voltage_V[i], 1e-3, 0);
-    last_V = at.voltage_V;
-  }
-  assert_true(last_V > 325); // of 330.6 V
-  type->destroy(ctx, model);
-  dea_device_destroy(ctx, device);
 }
 
 TESTS(context_set_up, context_tear_down)

@@ -16,37 +16,6 @@ static struct dea_model *model_of(const struct dea_device *device, enum dea_soli
   return layout_model(device, &settings);
 }
 
-/* Monitors at a voltage. */
-static struct dea_observation solve(struct dea_model *model, double voltage_V,
-                                    struct dea_load_point *point)
-{
-  struct dea_observation seen;
-  assert_int_equal(dea_model_find("3d")->solve(ctx, model, voltage_V, point), DEA_OK);
-  assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
-  return seen;
-}
-
-/* Annulus with a rigid hub that is pushed out: force on the hub by membrane theory, which was
- * integrated by another program (radii 5 and 20 mm, pre-stretch 1.2). */
-TEST(test_cone)
-{
-  static const struct {
-    double kV, force_mN;
-  } table[] = {{0, 216.559}, {3, 187.545}, {5, 135.930}};
-  struct dea_device *device = cone_new();
-  device->layout->bodies[0].moved = 4;
-  device->layout->bodies[0].shift_m[2] = 2e-3;
-  struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE, 1);
-  for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
-    struct dea_load_point point;
-    struct dea_observation seen = solve(model, 1e3 * table[i].kV, &point);
-    assert_close(seen.monitor[0][DEA_OBSERVED_Z], 2e-3, 1e-12, 0);
-    assert_close(1e3 * seen.monitor[0][DEA_OBSERVED_FORCE_Z], table[i].force_mN, 1e-3, 0);
-  }
-  dea_model_find("3d")->destroy(ctx, model);
-  dea_device_destroy(ctx, device);
-}
-
 /* A square of film whose edges at y are held apart and whose edges at x slide: pure shear, uniform,
  * l1 of the closed form (plane stress, incompressible). */
 TEST(test_pure_shear)
@@ -62,27 +31,19 @@ TEST(test_pure_shear)
   const size_t high = add_rectangle(device, "high", 0, a, a, 1e-3);
   const size_t left = add_rectangle(device, "left", -1e-3, 0, 1e-3, a);
   add_film(device, 0, 1, 1);
-  add_electrode(device, 0, false, 0, 0);
-  add_electrode(device, 0, true, 0, 1);
-  const struct dea_layout_support held[] = {
-      {.region = 0, .edge = true, .within = low, .components = 2},
-      {.region = 0, .edge = true, .within = high, .components = 2},
-      {.region = 0, .edge = true, .within = left, .components = 1},
-      {.region = 0, .edge = false, .within = DEA_LAYOUT_NONE, .components = 4, .hinged = true},
-  };
-  for (size_t i = 0; i < sizeof held / sizeof held[0]; i++) {
-    l->supports[l->support_count++] = held[i];
-  }
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+  add_electrodes(device, 0, 0);
+  hold_edge(device, 0, low, 2);
+  hold_edge(device, 0, high, 2);
+  hold_edge(device, 0, left, 1);
+  hold_flat(device, 0);
+  add_film_monitor(device);
   l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
       .name = "line", .kind = DEA_MONITOR_LINE, .at_m = {{1e-3, 2e-3}, {8e-3, 2e-3}}};
-  l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "corner", .kind = DEA_MONITOR_POINT, .at_m = {{a, a}}};
+  add_point(device, "corner", a, a);
   struct dea_model *model = model_of(device, DEA_FILM_SOLID, 1);
   for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
     struct dea_load_point point;
-    struct dea_observation seen = solve(model, 1e3 * table[i].kV, &point);
+    struct dea_observation seen = observed_at(model, 1e3 * table[i].kV, &point);
     double l1 = table[i].l1;
     assert_close(seen.monitor[0][DEA_OBSERVED_STRETCH_X], l1, 0, 1e-6);
     assert_close(seen.monitor[0][DEA_OBSERVED_STRETCH_Y], 1, 1e-9, 0);
@@ -118,17 +79,14 @@ static void check_dead_force(bool edge, double force_N, double tolerance)
   l->plies[0].material.law = dea_law_find("neo-hookean");
   l->plies[0].material.param[0] = 100e3;
   l->plies[0].material.permittivity.at_rest = 3;
-  add_electrode(device, 0, false, 0, 0);
-  add_electrode(device, 0, true, 0, 1);
-  l->supports[l->support_count++] =
-      (struct dea_layout_support){.region = 0, .edge = true, .within = left, .components = 1 | 4};
+  add_electrodes(device, 0, 0);
+  hold_edge(device, 0, left, 1 | 4);
   l->supports[l->support_count++] =
       (struct dea_layout_support){.region = 0,
                                   .edge = edge,
                                   .within = edge ? right : DEA_LAYOUT_NONE,
                                   .force_N = {force_N, 0, 0}};
-  l->supports[l->support_count++] =
-      (struct dea_layout_support){.region = 0, .edge = true, .within = right, .components = 4};
+  hold_edge(device, 0, right, 4);
   l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
       .name = "line", .kind = DEA_MONITOR_LINE, .at_m = {{0.5 * a - 2e-3, 0}, {0.5 * a + 2e-3, 0}}};
   assert_int_equal(dea_layout_find_symmetry(ctx, l), DEA_OK);
@@ -137,7 +95,7 @@ static void check_dead_force(bool edge, double force_N, double tolerance)
   struct dea_model *model = model_of(device, DEA_FILM_SOLID, 1);
   for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
     struct dea_load_point point;
-    const struct dea_observation seen = solve(model, 1e3 * table[i].kV, &point);
+    const struct dea_observation seen = observed_at(model, 1e3 * table[i].kV, &point);
     assert_close(seen.monitor[0][DEA_OBSERVED_STRETCH], table[i].l1, tolerance, 0);
   }
   dea_model_find("3d")->destroy(ctx, model);
@@ -160,8 +118,7 @@ TEST(test_end_of_a_support)
   add_rectangle(device, "film", 0, 0, a, a);
   const size_t part = add_rectangle(device, "part", -1e-3, -1e-3, 1e-3 + end_m, 2e-3);
   add_film(device, 0, 1, 1);
-  l->supports[l->support_count++] =
-      (struct dea_layout_support){.region = 0, .edge = true, .within = part, .components = 7};
+  hold_edge(device, 0, part, 7);
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 1};
   struct dea_layout_mesh mesh;
   assert_int_equal(dea_layout_mesh_create(ctx, l, &settings, &mesh), DEA_OK);
@@ -213,7 +170,7 @@ static void check_bilayer(double h, double mismatch, double tolerance)
   }
   struct dea_model *model = model_of(device, DEA_FILM_SOLID, 2);
   struct dea_load_point point;
-  struct dea_observation seen = solve(model, 0, &point);
+  struct dea_observation seen = observed_at(model, 0, &point);
   double curvature = 1.5 * mismatch / (2 * h);
   for (size_t i = 1; i < 3; i++) {
     double rise = seen.monitor[i][DEA_OBSERVED_Z] - seen.monitor[0][DEA_OBSERVED_Z];
@@ -253,21 +210,16 @@ static struct dea_device *turned_square(double angle, bool fibres)
     memcpy(l->plies[0].material.param, (double[]){50e3, 80e3, 0.3, 0.05}, 4 * sizeof(double));
     l->plies[0].material.fibre_angle_rad = 0.2; // to the first axis of the pre-stretch
   }
-  add_electrode(device, 0, false, 1, 0);
-  add_electrode(device, 0, true, 1, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "side",
-                                  .kind = DEA_MONITOR_POINT,
-                                  .at_m = {{c * 7e-3 - s * 5e-3, s * 7e-3 + c * 5e-3}}};
+  add_electrodes(device, 0, 1);
+  hold_edge(device, 0, DEA_LAYOUT_NONE, 7);
+  add_point(device, "side", c * 7e-3 - s * 5e-3, s * 7e-3 + c * 5e-3);
   l->monitors[l->monitor_count++] =
       (struct dea_layout_monitor){.name = "active", .kind = DEA_MONITOR_REGION, .region = 1};
   return device;
 }
 
 /* A device that is turned does what it did, turned, but for the mesh, which gmsh makes anew (to
- * 1e-9 on one mesh: test_solid_solve_angle); looked at in the middle of a side, as the electrode's
+ * 1e-9 on one mesh); looked at in the middle of a side, as the electrode's
  * corner is 0.5 % off on meshes that are not the same (docs/theory/trust.md). */
 static void check_turned(bool fibres)
 {
@@ -277,7 +229,7 @@ static void check_turned(bool fibres)
     struct dea_device *device = turned_square(i * angle, fibres);
     struct dea_model *model = model_of(device, fibres ? DEA_FILM_SOLID : DEA_FILM_MEMBRANE, 1);
     struct dea_load_point point;
-    struct dea_observation seen = solve(model, 3e3, &point);
+    struct dea_observation seen = observed_at(model, 3e3, &point);
     u[i][0] = seen.monitor[0][DEA_OBSERVED_X];
     u[i][1] = seen.monitor[0][DEA_OBSERVED_Y];
     area[i] = seen.monitor[1][DEA_OBSERVED_AREA_STRETCH];
@@ -324,7 +276,7 @@ TEST(test_tension_of_fibres)
     ply->material.fibre_angle_rad = i < 3 ? 0 : 90 * degree;
     assert_int_equal(dea_plane_elastic(&ply->material, l[0], l[1], &plane), DEA_OK);
     struct dea_model *model = model_of(device, DEA_FILM_SOLID, 1);
-    solve(model, 0, &point);
+    observed_at(model, 0, &point);
     assert_close(point.min_tension_N_per_m, H * fmin(plane.s1 / l[1], plane.s2 / l[0]), 1e-6, 0);
     dea_model_find("3d")->destroy(ctx, model);
     dea_device_destroy(ctx, device);
@@ -346,19 +298,13 @@ TEST(test_release_at_an_angle)
   const size_t corner = add_rectangle(device, "corner", -1e-6, -1e-6, 2e-6, 2e-6);
   add_film(device, 0, 1.3, 1.1);
   l->plies[0].angle_rad = angle;
-  const struct dea_layout_support held[] = {
-      {.region = 0, .edge = true, .within = left, .components = 1},
-      {.region = 0, .edge = true, .within = corner, .components = 2},
-      {.region = 0, .edge = false, .within = DEA_LAYOUT_NONE, .components = 4, .hinged = true},
-  };
-  for (size_t i = 0; i < sizeof held / sizeof held[0]; i++) {
-    l->supports[l->support_count++] = held[i];
-  }
-  l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "corner", .kind = DEA_MONITOR_POINT, .at_m = {{a, a}}};
+  hold_edge(device, 0, left, 1);
+  hold_edge(device, 0, corner, 2);
+  hold_flat(device, 0);
+  add_point(device, "corner", a, a);
   struct dea_model *model = model_of(device, DEA_FILM_SOLID, 1);
   struct dea_load_point point;
-  struct dea_observation seen = solve(model, 0, &point);
+  struct dea_observation seen = observed_at(model, 0, &point);
   assert_close(seen.monitor[0][DEA_OBSERVED_X], (F11 - 1) * a, 0, 1e-8 * a);
   assert_close(seen.monitor[0][DEA_OBSERVED_Y], (F21 + F22 - 1) * a, 0, 1e-8 * a);
   dea_model_find("3d")->destroy(ctx, model);
@@ -373,7 +319,6 @@ TEST(test_stack)
   double u[2] = {0}, charge[2] = {0};
   for (size_t films = 1; films <= 2; films++) {
     struct dea_device *device = device_new();
-    struct dea_layout *l = device->layout;
     size_t film = add_rectangle(device, "film", 0, 0, 10e-3, 10e-3);
     size_t active = add_rectangle(device, "active", 2e-3, 3e-3, 5e-3, 4e-3);
     for (size_t i = 0; i < films; i++) {
@@ -381,12 +326,10 @@ TEST(test_stack)
       add_electrode(device, i, true, active, 1 - i % 2);
     }
     add_electrode(device, 0, false, active, 0);
-    l->supports[l->support_count++] = (struct dea_layout_support){
-        .region = film, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-    l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-        .name = "edge", .kind = DEA_MONITOR_POINT, .at_m = {{7e-3, 5e-3}}};
+    hold_edge(device, film, DEA_LAYOUT_NONE, 7);
+    add_point(device, "edge", 7e-3, 5e-3);
     struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE, 1);
-    seen = solve(model, 4e3, &point);
+    seen = observed_at(model, 4e3, &point);
     u[films - 1] = seen.monitor[0][DEA_OBSERVED_X];
     charge[films - 1] = seen.channel[1].charge_C;
     assert_true(u[films - 1] > 50e-6); // it moves
@@ -424,10 +367,8 @@ static struct dea_device *bender_new(size_t layers, bool as_one, size_t elements
   l->plies[l->ply_count - 1].thickness_m = 50e-6;
   add_electrode(device, l->ply_count - 1, true, strip, 1);
   const size_t end = add_rectangle(device, "end", -1e-3, -1e-3, 1e-3, 6e-3);
-  l->supports[l->support_count++] =
-      (struct dea_layout_support){.region = strip, .edge = true, .within = end, .components = 7};
-  l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "tip", .kind = DEA_MONITOR_POINT, .at_m = {{8e-3, 2e-3}}};
+  hold_edge(device, strip, end, 7);
+  add_point(device, "tip", 8e-3, 2e-3);
   return device;
 }
 
@@ -443,7 +384,7 @@ TEST(test_layers)
       struct dea_load_point point;
       struct dea_device *device = bender_new(layers, i > 0, i == 1 ? layers : 1);
       struct dea_model *model = layout_model(device, &settings);
-      const struct dea_observation seen = solve(model, 1e3, &point);
+      const struct dea_observation seen = observed_at(model, 1e3, &point);
       tip[i] = seen.monitor[0][DEA_OBSERVED_Z];
       charge[i] = seen.channel[1].charge_C;
       dea_model_find("3d")->destroy(ctx, model);
@@ -471,59 +412,13 @@ TEST(test_disc_of_both_models)
   for (int kV = 2; kV <= 6; kV += 2) {
     struct dea_load_point of_blocks, of_free;
     assert_int_equal(type->solve(ctx, blocks, 1e3 * kV, &of_blocks), DEA_OK);
-    struct dea_observation seen = solve(free_mesh, 1e3 * kV, &of_free);
+    struct dea_observation seen = observed_at(free_mesh, 1e3 * kV, &of_free);
     assert_close(seen.monitor[0][DEA_OBSERVED_X], of_blocks.electrode_edge_u_m, 1e-3, 0);
     assert_close(of_free.capacitance_F, of_blocks.capacitance_F, 1e-4, 0);
     assert_close(of_free.min_tension_N_per_m, of_blocks.min_tension_N_per_m, 3e-3, 0);
   }
   type->destroy(ctx, blocks);
   type->destroy(ctx, free_mesh);
-  dea_device_destroy(ctx, device);
-}
-
-/* The soft disc of test_solid_solve_stops on a free mesh: its pull-in is located and told, as of
- * the exact disc. */
-TEST(test_pull_in_is_told)
-{
-  only_nightly(); // test_solid_solve_stops has the disc's mesh, test_snaps_are_located a free one
-  struct dea_device plain = test_soft_disc();
-  struct dea_device *device = device_new();
-  struct dea_layout *l = device->layout;
-  dea_region_add_circle(add_region(device, "film"), 0, 0, plain.frame_radius_m, false, nowhere);
-  dea_region_add_circle(add_region(device, "active"), 0, 0, 2.6e-3, false, nowhere);
-  add_film(device, 0, 1.2, 1.2);
-  l->plies[0].material = plain.film;
-  l->plies[0].thickness_m = plain.film_thickness_m;
-  l->plies[0].thickness_unstretched_m = plain.film_thickness_unstretched_m;
-  add_electrode(device, 0, false, 1, 0);
-  add_electrode(device, 0, true, 1, 1);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  const struct dea_model_type *exact_type = dea_model_find("axisymmetric");
-  const struct dea_model_type *type = dea_model_find("3d");
-  struct dea_model *exact, *model = model_of(device, DEA_FILM_MEMBRANE, 1);
-  struct dea_load_point point;
-  assert_int_equal(exact_type->create(ctx, &plain, NULL, &exact), DEA_OK);
-  assert_int_equal(exact_type->solve(ctx, exact, 360, &point), DEA_E_NO_EQUILIBRIUM);
-  double pull_in_V = exact_type->limit(exact)->point.voltage_V;
-  dea_status found = DEA_OK;
-  for (double V = 300; V < 350 && found == DEA_OK; V += 5) {
-    found = type->solve(ctx, model, V, &point);
-    // below it there is nothing to tell; beyond it lies a state that is told to be one of several
-    bool told = ((point.own_flags >> DEA_FLAG_STATES) & 1) != 0;
-    assert_true(found != DEA_OK || told == (V > pull_in_V));
-    if (found == DEA_OK && type->passed(model) != NULL) { // where it has gone past it
-      assert_close(type->passed(model)->point.voltage_V, pull_in_V, 1e-3, 0);
-    }
-  }
-  if (found != DEA_OK) {
-    assert_int_equal(found, DEA_E_NO_EQUILIBRIUM);
-    assert_non_null(strstr(dea_context_message(ctx), "pull-in at 0.33"));
-    assert_non_null(type->limit(model));
-    assert_close(type->limit(model)->point.voltage_V, pull_in_V, 1e-3, 0);
-  }
-  exact_type->destroy(ctx, exact);
-  type->destroy(ctx, model);
   dea_device_destroy(ctx, device);
 }
 
@@ -586,12 +481,12 @@ TEST(test_saved_state)
   hub->force_N[2] = 0.1;
   struct dea_model *first = model_of(device, DEA_FILM_MEMBRANE, 1);
   struct dea_model *second = model_of(device, DEA_FILM_MEMBRANE, 1);
-  solve(first, 2e3, &a);
+  observed_at(first, 2e3, &a);
   assert_int_equal(type->save(ctx, first, &saved), DEA_OK);
   assert_int_equal(type->load(ctx, second, &saved), DEA_OK);
-  struct dea_observation seen = solve(first, 3e3, &a);
+  struct dea_observation seen = observed_at(first, 3e3, &a);
   double z_m = seen.monitor[0][DEA_OBSERVED_Z];
-  seen = solve(second, 3e3, &b);
+  seen = observed_at(second, 3e3, &b);
   assert_true(z_m > 1e-3);
   assert_close(seen.monitor[0][DEA_OBSERVED_Z], z_m, 0, 0);
   assert_close(b.energy_J, a.energy_J, 0, 0);
@@ -604,9 +499,9 @@ TEST(test_saved_state)
   assert_memory_not_equal(mine->bytes, its->bytes, mine->size);
   assert_memory_equal(mark_of(&saved, "mesh")->bytes, mark_of(&other, "mesh")->bytes, 8);
   struct dea_model *third = model_of(device, DEA_FILM_MEMBRANE, 1);
-  z_m = solve(third, 3e3, &a).monitor[0][DEA_OBSERVED_Z]; // a state is no force of its own
+  z_m = observed_at(third, 3e3, &a).monitor[0][DEA_OBSERVED_Z]; // a state is no force of its own
   assert_int_equal(type->load(ctx, second, &saved), DEA_OK);
-  assert_close(solve(second, 3e3, &b).monitor[0][DEA_OBSERVED_Z], z_m, 1e-7, 0);
+  assert_close(observed_at(second, 3e3, &b).monitor[0][DEA_OBSERVED_Z], z_m, 1e-7, 0);
   type->destroy(ctx, third);
   type->destroy(ctx, first); // whose state was lent
   type->destroy(ctx, second);

@@ -48,13 +48,10 @@ TEST(test_rectangle)
   static const int waves[MODES][2] = {{1, 1}, {2, 1}, {3, 1}, {1, 2}}; // of sides as 2 to 1.1
   static const double l = 1.2, a = 20e-3, b = 11e-3;
   struct dea_device *device = device_new();
-  struct dea_layout *layout = device->layout;
   size_t film = add_rectangle(device, "film", 0, 0, a, b);
   add_film(device, film, l, l);
-  add_electrode(device, 0, false, film, 0);
-  add_electrode(device, 0, true, film, 1);
-  layout->supports[layout->support_count++] = (struct dea_layout_support){
-      .region = film, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  add_electrodes(device, 0, film);
+  hold_edge(device, film, DEA_LAYOUT_NONE, 7);
   struct dea_model *model = model_of(device);
   for (double V = 0; V < 6e3; V += 2.5e3) {
     struct dea_load_point points[ALL];
@@ -137,12 +134,10 @@ TEST(test_answers)
   l->bodies[0].mass_kg = 20e-3;
   l->gravity_m_per_s2[2] = -DEA_STANDARD_GRAVITY_M_PER_S2;
   film->density_kg_per_m3 = 1e-3;
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "point", .kind = DEA_MONITOR_POINT, .at_m = {{12e-3, 1e-3}}};
+  add_point(device, "point", 12e-3, 1e-3);
   l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
       .name = "line", .kind = DEA_MONITOR_LINE, .at_m = {{8e-3, 0}, {14e-3, 1e-3}}};
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+  add_film_monitor(device);
   for (int viscous = 0; viscous < 2; viscous++) {
     double below[MONITORS][DEA_OBSERVED_COUNT], above[MONITORS][DEA_OBSERVED_COUNT];
     struct dea_load_point mode, points[2];

@@ -82,51 +82,11 @@ TEST(test_lines_that_everything_has)
   dea_device_destroy(ctx, device);
 }
 
-/* Copies cover the whole, and a place comes back from where it was mirrored to. */
-TEST(test_copies)
-{
-  for (int fold = 0; fold <= 4; fold++) {
-    const struct dea_layout_sector sector = {fold, {1e-3, -2e-3}, 0.4};
-    size_t copies = dea_layout_sector_copies(&sector);
-    struct dea_region all = {.ctx = ctx};
-    assert_int_equal(copies, fold > 0 ? 2 * fold : 1);
-    if (fold == 0) {
-      continue;
-    }
-    dea_layout_sector_region(&sector, 1, &all);
-    for (double angle = 0.05; angle < 6.2; angle += 0.1) {
-      const double out[2] = {cos(angle), sin(angle)};
-      size_t inside = 0;
-      for (size_t k = 0; k < copies; k++) {
-        struct dea_motion copy = dea_layout_sector_copy(&sector, k);
-        // on a ray from the centre, as the copies that have it say
-        double turned[2], x[2];
-        copy.sine = copy.mirrored ? copy.sine : -copy.sine;
-        dea_layout_sector_turn(&copy, out, turned);
-        x[0] = sector.centre_m[0] + 0.1 * turned[0];
-        x[1] = sector.centre_m[1] + 0.1 * turned[1];
-        inside += dea_region_inside(&all, x[0], x[1]) ? 1 : 0;
-      }
-      assert_int_equal(inside, 1);
-    }
-    dea_region_free(&all);
-  }
-}
-
 static struct dea_model *model_of(const struct dea_device *device, enum dea_solid_film film,
                                   enum dea_solid_domain domain)
 {
   const struct dea_model_settings settings = {.film = film, .domain = domain, .refinement = 1};
   return layout_model(device, &settings);
-}
-
-static struct dea_observation solve(struct dea_model *model, double voltage_V,
-                                    struct dea_load_point *point)
-{
-  struct dea_observation seen;
-  assert_int_equal(dea_model_find("3d")->solve(ctx, model, voltage_V, point), DEA_OK);
-  assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
-  return seen;
 }
 
 /* A polygon of pre-stretched film that lies free: it goes back to where it came from, all points
@@ -142,12 +102,10 @@ static void check_release(size_t corners, int fold)
   } else {
     add_kite(device, centre, radius, angle);
     dea_region_add_circle(add_region(device, "tip"), centre[0], centre[1], 1e-6, false, nowhere);
-    l->supports[l->support_count++] =
-        (struct dea_layout_support){.region = 0, .edge = true, .within = 1, .components = 3};
+    hold_edge(device, 0, 1, 3);
   }
   add_film(device, 0, l_pre, l_pre);
-  add_electrode(device, 0, false, 0, 0);
-  add_electrode(device, 0, true, 0, 1);
+  add_electrodes(device, 0, 0);
   l->supports[l->support_count++] = (struct dea_layout_support){
       .region = 0, .within = DEA_LAYOUT_NONE, .components = 4, .hinged = true};
   double at[POINTS][2];
@@ -155,19 +113,17 @@ static void check_release(size_t corners, int fold)
     double turn = corners > 0 ? (double)i : angle - 0.25 + 0.1 * (double)i;
     at[i][0] = centre[0] + 0.5 * radius * cos(turn);
     at[i][1] = centre[1] + 0.5 * radius * sin(turn);
-    l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-        .name = "point", .kind = DEA_MONITOR_POINT, .at_m = {{at[i][0], at[i][1]}}};
+    add_point(device, "point", at[i][0], at[i][1]);
   }
   l->monitors[l->monitor_count++] =
       (struct dea_layout_monitor){.name = "line",
                                   .kind = DEA_MONITOR_LINE,
                                   .at_m = {{at[0][0], at[0][1]}, {at[5][0], at[5][1]}}};
-  l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "film", .kind = DEA_MONITOR_REGION};
+  add_film_monitor(device);
   assert_int_equal(sector_of(device).fold, fold);
   struct dea_model *model = model_of(device, DEA_FILM_SOLID, DEA_DOMAIN_SECTOR);
   struct dea_load_point point;
-  struct dea_observation seen = solve(model, 0, &point);
+  struct dea_observation seen = observed_at(model, 0, &point);
   for (size_t i = 0; i < POINTS; i++) {
     for (int k = 0; k < 2; k++) {
       assert_close(seen.monitor[i][k], (1 / l_pre - 1) * (at[i][k] - centre[k]), 0, 1e-9 * radius);
@@ -230,10 +186,8 @@ static struct dea_device *loaded_cone(void)
   l->springs[l->spring_count++] = (struct dea_layout_spring){.component = 2, .stiffness = 5};
   l->pressures[l->pressure_count++] =
       (struct dea_layout_pressure){.region = 3, .ply = 0, .pressure_Pa = 150};
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "point", .kind = DEA_MONITOR_POINT, .at_m = {{3e-3 - 8e-3, -2e-3 - 6e-3}}};
-  l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "film", .kind = DEA_MONITOR_REGION};
+  add_point(device, "point", 3e-3 - 8e-3, -2e-3 - 6e-3);
+  add_film_monitor(device);
   assert_int_equal(dea_layout_find_symmetry(ctx, l), DEA_OK);
   return device;
 }
@@ -248,7 +202,7 @@ TEST(test_loaded_cone)
   dea_model_find("3d")->size(sector, &small);
   dea_model_find("3d")->size(whole, &large);
   assert_true(large.unknowns > 6 * small.unknowns);
-  struct dea_observation b = solve(whole, 3e3, &all), a = solve(sector, 3e3, &part);
+  struct dea_observation b = observed_at(whole, 3e3, &all), a = observed_at(sector, 3e3, &part);
   assert_true(b.monitor[0][DEA_OBSERVED_Z] > 8e-4);
   for (size_t i = 0; i < 2; i++) { // hub and point
     double scale = fabs(b.monitor[i][DEA_OBSERVED_Z]);

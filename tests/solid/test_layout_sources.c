@@ -97,14 +97,9 @@ static void add_square(struct dea_device *device, double x_m, size_t channel)
   size_t film = add_rectangle(device, names[ply], x_m, 0, 10e-3, 10e-3);
   size_t low = add_rectangle(device, "low", x_m, -1e-3, 10e-3, 1e-3);
   size_t left = add_rectangle(device, "left", x_m - 1e-3, 0, 1e-3, 10e-3);
-  const struct dea_layout_support held[] = {
-      {.region = film, .edge = true, .within = low, .components = 2},
-      {.region = film, .edge = true, .within = left, .components = 1},
-      {.region = film, .edge = false, .within = DEA_LAYOUT_NONE, .components = 4, .hinged = true},
-  };
-  for (size_t i = 0; i < sizeof held / sizeof held[0]; i++) {
-    l->supports[l->support_count++] = held[i];
-  }
+  hold_edge(device, film, low, 2);
+  hold_edge(device, film, left, 1);
+  hold_flat(device, film);
   add_film(device, film, 1, 1);
   l->plies[ply].name = names[ply];
   l->plies[ply].material.branches[0] = (struct dea_branch){.modulus_Pa = 80e3, .time_s = 0.2};
@@ -172,11 +167,9 @@ static struct dea_device *pair_new(double middle_V, double top_V)
   l->channels[1] = (struct dea_layout_channel){.name = "middle", .own_V = middle_V};
   l->channels[2] = (struct dea_layout_channel){.name = "top", .own_V = top_V};
   l->channel_count = 3;
-  add_electrode(device, 0, false, wide, 0);
-  add_electrode(device, 0, true, wide, 1);
+  add_electrodes(device, 0, wide);
   add_electrode(device, 1, true, part, 2);
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = film, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  hold_edge(device, film, DEA_LAYOUT_NONE, 7);
   l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
       .name = "corner", .kind = DEA_MONITOR_POINT, .ply = 1, .at_m = {{2e-3, 3e-3}}};
   return device;
@@ -268,62 +261,6 @@ TEST(test_as_one_supply)
   end(models[1], devices[1]);
 }
 
-/* A plate among four electrodes that play a quarter of a cycle apart: what it does is what it did a
- * quarter before, turned by 90 degrees, as well as the mesh has that symmetry. */
-TEST(test_round)
-{
-  static const struct play plays[4] = {
-      {1500, 1500, 0}, {1500, 1500, -0.25}, {1500, 1500, -0.5}, {1500, 1500, -0.75}};
-  struct dea_device *device = device_new();
-  struct dea_layout *l = device->layout;
-  size_t film = add_rectangle(device, "film", -20e-3, -20e-3, 40e-3, 40e-3);
-  size_t plate = add_rectangle(device, "plate", -5e-3, -5e-3, 10e-3, 10e-3);
-  static const double at[4][4] = {{8e-3, -6e-3, 8e-3, 12e-3},
-                                  {-6e-3, 8e-3, 12e-3, 8e-3},
-                                  {-16e-3, -6e-3, 8e-3, 12e-3},
-                                  {-6e-3, -16e-3, 12e-3, 8e-3}};
-  add_film(device, film, 1.2, 1.2);
-  add_electrode(device, 0, false, film, 0);
-  for (size_t k = 0; k < 4; k++) {
-    l->channels[k + 1] = (struct dea_layout_channel){.name = "quadrant", .ratio = 1};
-    add_electrode(device, 0, true,
-                  add_rectangle(device, "quadrant", at[k][0], at[k][1], at[k][2], at[k][3]), k + 1);
-  }
-  l->channel_count = 5;
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = film, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  l->bodies[l->body_count++] = (struct dea_layout_body){
-      .name = "plate", .region = plate, .free = 63, .force_N = {0, 0, 30e-3}};
-  l->monitors[l->monitor_count++] =
-      (struct dea_layout_monitor){.name = "plate", .kind = DEA_MONITOR_BODY, .body = 0};
-  struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE);
-  struct history h = begin(model, false, plays, 5);
-  enum { STEPS = 8, QUARTER = STEPS / 4 };
-  double turn[STEPS + 1][2], charge[STEPS + 1][4], most = 0;
-  for (int n = 0; n <= STEPS; n++) {
-    if (n > 0) {
-      go(&h, 1.0 / STEPS, (double)n / STEPS);
-    }
-    const struct dea_observation seen = observe(model);
-    for (int i = 0; i < 2; i++) {
-      turn[n][i] = seen.monitor[0][DEA_OBSERVED_TURN_X + i];
-    }
-    most = fmax(most, hypot(turn[n][0], turn[n][1]));
-    for (int k = 0; k < 4; k++) {
-      charge[n][k] = seen.channel[k + 1].charge_C;
-    }
-  }
-  assert_true(most > 1e-4);
-  for (int n = QUARTER; n <= STEPS; n++) {
-    assert_close(turn[n][0], -turn[n - QUARTER][1], 0, 5e-3 * most);
-    assert_close(turn[n][1], turn[n - QUARTER][0], 0, 5e-3 * most);
-    for (int k = 1; k < 4; k++) {
-      assert_close(charge[n][k], charge[n - QUARTER][k - 1], 0, 2e-3 * charge[QUARTER][0] + 1e-9);
-    }
-  }
-  end(model, device);
-}
-
 /* Films that are held leak between their channels: currents G V, the loss V G V of the time. */
 TEST(test_leaks)
 {
@@ -341,8 +278,7 @@ TEST(test_leaks)
   }
   l->channels[2] = (struct dea_layout_channel){.name = "top"};
   l->channel_count = 3;
-  add_electrode(device, 0, false, film, 0);
-  add_electrode(device, 0, true, film, 1);
+  add_electrodes(device, 0, film);
   add_electrode(device, 1, true, film, 2);
   l->supports[l->support_count++] =
       (struct dea_layout_support){.region = film, .within = DEA_LAYOUT_NONE, .components = 7};

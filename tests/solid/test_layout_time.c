@@ -68,8 +68,7 @@ static struct dea_device *square_new(void)
   struct dea_device *device = device_new();
   add_rectangle(device, "film", 0, 0, 10e-3, 10e-3);
   add_film(device, 0, 1, 1);
-  add_electrode(device, 0, false, 0, 0);
-  add_electrode(device, 0, true, 0, 1);
+  add_electrodes(device, 0, 0);
   return device;
 }
 
@@ -77,19 +76,12 @@ static struct dea_device *square_new(void)
 static struct dea_device *free_square_new(void)
 {
   struct dea_device *device = square_new();
-  struct dea_layout *l = device->layout;
   const size_t low = add_rectangle(device, "low", 0, -1e-3, 10e-3, 1e-3);
   const size_t left = add_rectangle(device, "left", -1e-3, 0, 1e-3, 10e-3);
-  const struct dea_layout_support held[] = {
-      {.region = 0, .edge = true, .within = low, .components = 2},
-      {.region = 0, .edge = true, .within = left, .components = 1},
-      {.region = 0, .edge = false, .within = DEA_LAYOUT_NONE, .components = 4, .hinged = true},
-  };
-  for (size_t i = 0; i < sizeof held / sizeof held[0]; i++) {
-    l->supports[l->support_count++] = held[i];
-  }
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+  hold_edge(device, 0, low, 2);
+  hold_edge(device, 0, left, 1);
+  hold_flat(device, 0);
+  add_film_monitor(device);
   return device;
 }
 
@@ -271,8 +263,7 @@ static struct dea_device *line_new(void)
     add_electrode(device, 0, true, i, 1);
     l->electrodes[i].sheet_resistance_ohm = sheet_ohm;
   }
-  l->supports[l->support_count++] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  hold_edge(device, 0, DEA_LAYOUT_NONE, 7);
   return device;
 }
 

@@ -3,8 +3,6 @@
 #include "testing.h"
 #include "yeoh_part.h"
 
-#include <string.h>
-
 static struct dea_hex_shape shape;
 static struct dea_element_result at, up;
 
@@ -52,13 +50,6 @@ static dea_status evaluate(const struct dea_part_material *layer, const struct s
   return element.type->evaluate(&element, &in, level, out);
 }
 
-static dea_status capacity(const struct dea_part_material *layer, const struct sample *s, double *L)
-{
-  const struct dea_element element = potential_hexahedron(&shape);
-  const struct dea_element_input in = {.part_material = layer, .X = s->X, .u = s->u};
-  return element.type->capacity(&element, &in, L);
-}
-
 static double largest(const double *values, int count)
 {
   double most = 0;
@@ -66,31 +57,6 @@ static double largest(const double *values, int count)
     most = fmax(most, fabs(values[i]));
   }
   return most;
-}
-
-/* The electric part alone is -(1/2) phi L phi, and the tangent's block of the potentials is -c^2 L.
- */
-TEST(test_capacity_is_the_electric_energy)
-{
-  static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  const struct dea_part_material soft = film(1.5);
-  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
-  struct sample s = distorted();
-  int n = shape.nodes;
-  assert_int_equal(evaluate(&soft, &s, DEA_TANGENT, &at), DEA_OK);
-  struct sample grounded = s;
-  memset(grounded.psi, 0, sizeof grounded.psi);
-  assert_int_equal(evaluate(&soft, &grounded, DEA_ENERGY, &up), DEA_OK);
-  assert_int_equal(capacity(&soft, &s, L), DEA_OK);
-  double energy = 0, most = largest(L, n * n);
-  for (int a = 0; a < n; a++) {
-    for (int b = 0; b < n; b++) {
-      energy -= 0.5 * scale * scale * s.psi[a] * L[a * n + b] * s.psi[b];
-      assert_close(at.K[(4 * a + 3) * 4 * n + 4 * b + 3], -scale * scale * L[a * n + b], 0,
-                   1e-12 * scale * scale * most);
-    }
-  }
-  assert_close(at.energy_J - up.energy_J, energy, 1e-9, 0);
 }
 
 /* A potential that is linear in the reference thickness is the thin film's field, whatever the
@@ -150,25 +116,6 @@ TEST(test_plate_capacitor)
     assert_close(top, charge, 1e-10, 0);
     assert_close(bottom, -charge, 1e-10, 0);
     assert_close(inside, 0, 0, 1e-10 * charge);
-  }
-}
-
-TEST(test_spread_in_place)
-{
-  enum { NODES = 3, SMALL = 9, WIDE = 12 };
-  static double g3[SMALL], K3[SMALL * SMALL], g[WIDE], K[WIDE * WIDE];
-  for (int i = 0; i < SMALL * SMALL; i++) {
-    g3[i % SMALL] = g[i % SMALL] = 1 + i % SMALL;
-    K3[i] = K[i] = 100 + i;
-  }
-  dea_element_spread(NODES, g, K, g, K);
-  for (int i = 0; i < WIDE; i++) {
-    int row = 3 * (i / 4) + i % 4;
-    assert_close(g[i], i % 4 < 3 ? g3[row] : 0, 0, 0);
-    for (int j = 0; j < WIDE; j++) {
-      bool both = i % 4 < 3 && j % 4 < 3;
-      assert_close(K[WIDE * i + j], both ? K3[SMALL * row + 3 * (j / 4) + j % 4] : 0, 0, 0);
-    }
   }
 }
 

@@ -554,15 +554,4 @@ TEST(test_pre_stretch_at_an_angle)
   }
 }
 
-TEST(test_orders_out_of_range)
-{
-  static const int orders[][2] = {
-      {0, 1}, {1, 0}, {DEA_HEX_ORDER_MAX + 1, 1}, {1, DEA_HEX_ORDER_MAX + 1}};
-  for (size_t i = 0; i < sizeof orders / sizeof orders[0]; i++) {
-    struct dea_element_set set;
-    assert_int_equal(dea_element_set_create(ctx, orders[i][0], orders[i][1], &set), DEA_E_ARGUMENT);
-    dea_element_set_release(ctx, &set);
-  }
-}
-
 TESTS(context_set_up, context_tear_down)

@@ -1,4 +1,4 @@
-/* Layered hexahedra and their meshes: pre-stress, patch test, areas. */
+/* Layered hexahedra and their meshes: ways to compute them, pre-stress. */
 // ctest: quick, heavy
 #include "devices.h"
 #include "failing_allocator.h"
@@ -9,8 +9,6 @@
 #include "yeoh_part.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
-
-#include <stdlib.h>
 
 static struct dea_hex_shape shape;
 static struct dea_element_result at, up;
@@ -97,132 +95,6 @@ TEST(test_flat_film_has_the_true_pre_stress)
 }
 
 /* ---- meshes ---- */
-
-/* Forces of all elements on the nodes under u = (D - 1) X. */
-static void forces(const struct dea_grid *grid, const struct dea_part_material *layer,
-                   const double *D, double *g, double *volume)
-{
-  static const double none[DEA_HEX_PRESSURES_MAX] = {0};
-  *volume = 0;
-  for (size_t e = 0; e < grid->element_count; e++) {
-    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
-    double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-    for (int n = 0; n < shape.nodes; n++) {
-      for (int i = 0; i < 3; i++) {
-        X[3 * n + i] = grid->X[3 * nodes[n] + i];
-        u[3 * n + i] = -X[3 * n + i];
-      }
-      for (int i = 0; i < 9; i++) {
-        u[3 * n + i / 3] += D[i] * X[3 * n + i % 3];
-      }
-    }
-    assert_int_equal(evaluate_hex(&shape, layer, X, u, none, 2e3, DEA_TANGENT, &at), DEA_OK);
-    *volume += at.volume_m3;
-    for (int i = 0; i < 3 * shape.nodes; i++) {
-      g[3 * nodes[i / 3] + i % 3] += at.g[i];
-    }
-  }
-}
-
-/* Patch test: a homogeneous deformation of a distorted mesh leaves no force on the inner nodes. */
-TEST(test_patch_and_area)
-{
-  static const double D[9] = {1.1, 0.05, 0, -0.02, 0.95, 0.03, 0.04, 0, 0.96};
-  const double a = 3.75e-3, b = 15e-3, h = 44e-6;
-  for (int order = 1; order <= 3; order++) {
-    struct dea_grid *grid;
-    const struct dea_part_material soft = film(1.5);
-    double volume, largest = 0;
-    assert_int_equal(dea_hex_shape_create(order, 2, &shape), DEA_OK);
-    const struct dea_quarter quarter = {order, 2, a, b, h, .fine = 3, .edge = 5e-4};
-    assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
-    double *g = calloc(3 * grid->node_count, sizeof *g);
-    assert_non_null(g);
-    forces(grid, &soft, D, g, &volume);
-    for (size_t i = 0; i < 3 * grid->node_count; i++) {
-      largest = fmax(largest, fabs(g[i]));
-    }
-    size_t inner = 0;
-    for (size_t n = 0; n < grid->node_count; n++) {
-      const double *X = grid->X + 3 * n;
-      bool edge = hypot(X[0], X[1]) > 0.98 * b || X[0] < 1e-9 || X[1] < 1e-9;
-      for (int i = 0; i < 3 && !edge && fabs(X[2]) < 0.1 * h; i++, inner++) {
-        assert_close(g[3 * n + (size_t)i], 0, 0, 1e-9 * largest);
-      }
-    }
-    assert_true(inner > 20);
-    double exact = 0.25 * acos(-1) * b * b * h, error = fabs(volume / exact - 1);
-    assert_true(error < (order == 1 ? 2e-2 : order == 2 ? 2e-4 : 2e-6));
-    free(g);
-    dea_grid_destroy(ctx, grid);
-  }
-}
-
-/* No two nodes in one place: neighbouring blocks share theirs, and fibres theirs with the film.
- * Every node has an element. The fibres' volume is that of their strips. */
-static void check_joined(int fibres, double width)
-{
-  struct dea_grid *grid;
-  const struct dea_quarter quarter = {2,      1,     2e-3, 9e-3,      1e-4,
-                                      fibres, width, 1e-4, .fine = 3, .across = 2};
-  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
-  for (size_t i = 0; i < grid->node_count; i++) {
-    for (size_t j = 0; j < i; j++) {
-      const double *x = grid->X + 3 * i, *y = grid->X + 3 * j;
-      assert_true(fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) > 1e-6);
-    }
-  }
-  assert_int_equal(dea_hex_shape_create(2, 1, &shape), DEA_OK);
-  static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
-  const struct dea_part_material hard = plastic();
-  char *used = calloc(grid->node_count, 1);
-  double volume = 0;
-  assert_non_null(used);
-  for (size_t e = 0; e < grid->element_count; e++) {
-    double X[DEA_HEX_DOFS_MAX];
-    for (int n = 0; n < shape.nodes; n++) {
-      int node = grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
-      used[node] = 1;
-      for (int i = 0; i < 3; i++) {
-        X[3 * n + i] = grid->X[3 * node + i];
-      }
-    }
-    assert_int_equal(evaluate_hex(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &at), DEA_OK);
-    volume += grid->ply[e] == DEA_PLY_FIBRE ? at.volume_m3 : 0;
-  }
-  for (size_t n = 0; n < grid->node_count; n++) {
-    assert_int_equal(used[n], 1);
-  }
-  free(used);
-  // strip between the circles: integral of sqrt(b^2 - y^2) - sqrt(a^2 - y^2) over half the width
-  double strip = 0;
-  for (int i = 0; i < 1000; i++) {
-    double y = 0.5 * width * (i + 0.5) / 1000;
-    strip += 0.5 * width / 1000 * (sqrt(81e-6 - y * y) - sqrt(4e-6 - y * y));
-  }
-  assert_close(volume, fibres / 2 * 1e-4 * strip, 2e-4, 0);
-  dea_grid_destroy(ctx, grid);
-}
-
-TEST(test_blocks_are_joined)
-{
-  check_joined(4, 2e-3);
-  check_joined(8, 1.2e-3);
-}
-
-TEST(test_meshes_that_cannot_be)
-{
-  const struct dea_quarter good = {2, 1, 2e-3, 9e-3, 1e-4, 8, 1.2e-3, 1e-4, .fine = 3, .across = 2};
-  struct dea_quarter bad[] = {good, good, good};
-  struct dea_grid *grid = NULL;
-  bad[0].fibre_width = 1.6e-3; // meet at the circle a
-  bad[1].fibres = 5;
-  bad[2].fine = 0;
-  for (size_t i = 0; i < 3; i++) {
-    assert_int_equal(dea_grid_quarter(ctx, &bad[i], &grid), DEA_E_ARGUMENT);
-    assert_null(grid);
-  }
-}
 
 static void make_grid(struct dea_context *failing)
 {

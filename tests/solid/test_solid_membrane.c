@@ -8,11 +8,6 @@
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
-#include <stdlib.h>
-
-static struct dea_flat_shape shape;
-static struct dea_element_result at;
-
 /* ---- against the law in three dimensions ---- */
 
 /* P of the film from the material point of a solid, its third column the normal over |F1 x F2|^2;
@@ -186,89 +181,6 @@ TEST(test_flat_film_has_the_true_pre_stress)
 }
 
 /* ---- meshes ---- */
-
-/* Patch test: a homogeneous deformation of a distorted mesh, out of its plane too, leaves no force
- * on the inner nodes. */
-TEST(test_patch_and_area)
-{
-  static const double D[6] = {1.1, 0.05, -0.02, 0.95, 0.3, -0.2};
-  const double a = 3.75e-3, b = 15e-3, h = 44e-6;
-  for (int order = 1; order <= 3; order++) {
-    struct dea_grid *grid;
-    const struct dea_part_material soft = yeoh_film(1.5);
-    double volume = 0;
-    assert_int_equal(dea_flat_shape_create(order, &shape), DEA_OK);
-    const struct dea_quarter quarter = {order,           2, a, b, h, .fine = 3, .edge = 5e-4,
-                                        .membrane = true};
-    assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
-    double *g = calloc(3 * grid->node_count, sizeof *g);
-    assert_non_null(g);
-    for (size_t e = 0; e < grid->element_count; e++) {
-      const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
-      double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX];
-      assert_int_equal(grid->levels[e], 1);
-      for (int i = 0; i < 3 * shape.nodes; i++) {
-        const double *x = grid->X + 3 * nodes[i / 3];
-        X[i] = x[i % 3];
-        u[i] = D[2 * (i % 3)] * x[0] + D[2 * (i % 3) + 1] * x[1] - x[i % 3];
-      }
-      assert_int_equal(evaluate_membrane(&shape, &soft, X, u, 2e3, DEA_FORCE, &at), DEA_OK);
-      volume += at.volume_m3;
-      for (int i = 0; i < 3 * shape.nodes; i++) {
-        g[3 * nodes[i / 3] + i % 3] += at.g[i];
-      }
-    }
-    double most = largest(g, 3 * grid->node_count);
-    size_t inner = 0;
-    for (size_t n = 0; n < grid->node_count; n++) {
-      const double *X = grid->X + 3 * n;
-      bool edge = hypot(X[0], X[1]) > 0.98 * b || X[0] < 1e-9 || X[1] < 1e-9;
-      for (int i = 0; i < 3 && !edge; i++, inner++) {
-        assert_close(g[3 * n + (size_t)i], 0, 0, 1e-9 * most);
-      }
-    }
-    assert_true(inner > 20);
-    double exact = 0.25 * acos(-1) * b * b * soft.thickness_m, error = fabs(volume / exact - 1);
-    assert_true(error < (order == 1 ? 2e-2 : order == 2 ? 2e-4 : 2e-6));
-    free(g);
-    dea_grid_destroy(ctx, grid);
-  }
-}
-
-/* With fibres: one surface everywhere, the bond and the fibre on top of it where there is one, all
- * joined. */
-TEST(test_membrane_with_fibres)
-{
-  const double h = 1e-4, t = 2e-4;
-  struct dea_grid *grid;
-  const struct dea_quarter quarter = {
-      2, 2, 2e-3, 9e-3, h, 4, 2e-3, t, .fine = 3, .across = 2, .membrane = true};
-  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
-  size_t plies[3] = {0, 0, 0}, under = 0;
-  for (size_t e = 0; e < grid->element_count; e++) {
-    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
-    int ply = grid->ply[e];
-    plies[ply]++;
-    under += ply == DEA_PLY_SURFACE && grid->region[e] == DEA_REGION_FIBRE;
-    assert_int_equal(grid->levels[e] == 1, ply == DEA_PLY_SURFACE);
-    assert_int_equal(dea_grid_nodes_of(grid, e), grid->levels[e] == 1 ? 9 : 27);
-    assert_true(ply == DEA_PLY_SURFACE || grid->region[e] == DEA_REGION_FIBRE);
-    double bottom = ply == DEA_PLY_FIBRE_ON_BOND ? 0.5 * h : 0;
-    assert_close(grid->X[3 * nodes[0] + 2], bottom, 0, 1e-12);
-    if (grid->levels[e] > 1) {
-      double top = ply == DEA_PLY_BOND ? 0.5 * h : 0.5 * h + t;
-      assert_close(grid->X[3 * nodes[26] + 2], top, 0, 1e-12);
-    }
-  }
-  assert_true(under > 0 && plies[1] == under && plies[2] == under && plies[0] > under);
-  for (size_t i = 0; i < grid->node_count; i++) {
-    for (size_t j = 0; j < i; j++) {
-      const double *x = grid->X + 3 * i, *y = grid->X + 3 * j;
-      assert_true(fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) > 1e-6);
-    }
-  }
-  dea_grid_destroy(ctx, grid);
-}
 
 /* Loads on a membrane: it is its own upper and lower face and has no sides. */
 TEST(test_faces)

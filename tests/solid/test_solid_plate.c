@@ -396,28 +396,6 @@ TEST(test_membranes)
 
 /* ---- what cannot be ---- */
 
-TEST(test_plates_that_cannot_be)
-{
-  const struct dea_fibre_disc good = plate(8, 0, 2e-3);
-  struct dea_fibre_disc bad[8];
-  for (size_t i = 0; i < 8; i++) {
-    bad[i] = good;
-  }
-  bad[0].tip_width = bad[0].outer_width = 3e-3; // meet: 3.75 mm sin(22.5 degrees) = 1.435 mm
-  bad[1].tip_radius = 0;
-  bad[2].tip_radius = b;
-  bad[3].electrode_radius = b;
-  bad[4].sectors = 17;
-  bad[5].size = 1e-7;
-  bad[6].edge = 0;
-  bad[7].outer_radius = 1.1 * b;
-  for (size_t i = 0; i < 8; i++) {
-    struct dea_grid *grid;
-    assert_int_equal(create(&bad[i], &grid), DEA_E_ARGUMENT);
-    assert_null(grid);
-  }
-}
-
 static void make_plate(struct dea_context *failing)
 {
   struct dea_fibre_disc p = plate(4, 0, 2e-3);
@@ -460,32 +438,6 @@ TEST(test_finer_at_tips)
     finer.sectors = 2;
     check(&finer, 1e-4);
   }
-}
-
-TEST(test_graded_cuts)
-{
-  double cuts[101];
-  size_t n = dea_cuts_graded(1, 0.01, 0.02, 2, 0.1, 100, cuts);
-  assert_true(n > 10 && n < 25);
-  assert_close(cuts[0], 0, 0, 0);
-  assert_close(cuts[n], 1, 0, 0);
-  assert_close(cuts[1], 0.01, 0.2, 0);
-  assert_close(1 - cuts[n - 1], 0.02, 0.2, 0);
-  for (size_t i = 0; i < n; i++) {
-    double width = cuts[i + 1] - cuts[i];
-    assert_true(width > 0 && width < 0.101);
-    assert_true(i == 0 || fabs(log2(width / (cuts[i] - cuts[i - 1]))) < 1.1);
-  }
-  n = dea_cuts_graded(1, 0.01, 0.1, 1.2, 0.1, 100, cuts);
-  for (size_t i = 1; i < n; i++) {
-    double growth = (cuts[i + 1] - cuts[i]) / (cuts[i] - cuts[i - 1]);
-    assert_true(growth < 1.22 && (growth > 1.15 || cuts[i] > 0.3));
-  }
-  assert_int_equal(dea_cuts_graded(1, 2, 2, 2, 2, 100, cuts), 1);
-  assert_int_equal(dea_cuts_graded(1, 0.01, 0.02, 1, 0.1, 100, cuts), 0);
-  assert_int_equal(dea_cuts_graded(1, 1e-3, 1e-3, 2, 1e-3, 100, cuts), 0);
-  assert_int_equal(dea_cuts_graded(1, 0, 0.02, 2, 0.1, 100, cuts), 0);
-  assert_int_equal(dea_cuts_graded(1, 0.01, 0, 2, 0.1, 100, cuts), 0);
 }
 
 TESTS(context_set_up, context_tear_down)

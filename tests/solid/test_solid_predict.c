@@ -1,5 +1,4 @@
-/* Stresses at the end of a linear step, the metric of the shift, and the barrier before inversion.
- */
+/* Stresses at the end of a linear step, and the barrier before inversion. */
 #include "devices.h"
 #include "solid_element.h"
 #include "testing.h"
@@ -86,35 +85,6 @@ TEST(test_stresses_of_a_step)
     assert_true(at > 1e-9);
     assert_close(at / half, 4, 5e-2, 0);
   }
-}
-
-/* L of a linear field is its squared gradient times the volume, and of a constant 0; the volume is
- * shared out among the nodes. */
-TEST(test_metric)
-{
-  double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], volume[DEA_HEX_NODES_MAX], sum = 0, whole = 0;
-  const struct dea_part_material layer = film();
-  sample();
-  const struct dea_element element = hexahedron(&shape);
-  assert_int_equal(element.type->metric(&element, &layer, X, L, volume), DEA_OK);
-  assert_int_equal(evaluate_hex(&shape, &layer, X, u, pressures, 0, DEA_ENERGY, &plain), DEA_OK);
-  for (int a = 0; a < shape.nodes; a++) {
-    double row = 0;
-    whole += volume[a];
-    assert_true(volume[a] > 0);
-    for (int b = 0; b < shape.nodes; b++) {
-      double f[2], nodes[2] = {a, b};
-      for (int k = 0; k < 2; k++) {
-        const double *x = X + 3 * (int)nodes[k];
-        f[k] = 2 * x[0] - 3 * x[1] + 6 * x[2];
-      }
-      sum += f[0] * L[a * shape.nodes + b] * f[1];
-      row += L[a * shape.nodes + b];
-    }
-    assert_close(row, 0, 0, 1e-12 * L[a * shape.nodes + a]);
-  }
-  assert_close(whole, plain.volume_m3, 1e-12, 0);
-  assert_close(sum, 49 * plain.volume_m3, 1e-12, 0);
 }
 
 /* (kappa_s/2) (J - 1)^2 near 1; without bound before J = 0. */

@@ -1,5 +1,5 @@
-/* What elements tell of themselves: closed forms of homogeneous states, bending, interfaces; solid
- * films, flat ones, films with a potential. */
+/* What elements tell of themselves: closed forms of homogeneous states, bending, second
+ * derivatives. */
 #include "devices.h"
 #include "failing_allocator.h"
 #include "material/plane.h"
@@ -382,35 +382,6 @@ TEST(test_bending)
     dea_field_mesh_destroy(ctx, mesh);
     strip_destroy(s);
   }
-}
-
-/* Points of the joint of the two regions and of the two plies are there once a part. */
-TEST(test_parts_do_not_share_points)
-{
-  struct strip *s = strip_create(SOLID, 2, 2, 1);
-  struct dea_field_mesh *mesh, *surface;
-  assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
-  assert_int_equal(mesh->point_count, 3 * 5 * 5 * 3); // two parts of film, one of fibre
-  assert_int_equal(s->grid->node_count, 9 * 5 * 3 + 5 * 5 * 2);
-  assert_int_equal(dea_recover_surface(ctx, &s->in, 0, &surface), DEA_OK);
-  assert_int_equal(surface->point_count, 2 * 5 * 5);
-  assert_int_equal(surface->cell_count, 8);
-  dea_field_mesh_destroy(ctx, mesh);
-  dea_field_mesh_destroy(ctx, surface);
-  strip_destroy(s);
-}
-
-TEST(test_inverted_element)
-{
-  const double flat[9] = {1, 0, 0, 0, 1, 0, 0, 0, -1};
-  struct strip *s = strip_create(SOLID, 2, 2, 1);
-  struct dea_field_mesh *mesh;
-  deform(s, flat);
-  assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_E_DOMAIN);
-  assert_null(mesh);
-  assert_int_equal(dea_recover_surface(ctx, &s->in, 0, &mesh), DEA_E_DOMAIN);
-  assert_null(mesh);
-  strip_destroy(s);
 }
 
 static struct strip *memory_strip;

@@ -1,4 +1,5 @@
-/* Solids by PETSc: the plain disc against the exact one, false unstable modes, bending. */
+/* Solids by PETSc: the plain disc against the exact one, false unstable modes, the actuator as
+ * built, bending. */
 // ctest: solid
 #include "devices.h"
 #include "failing_allocator.h"
@@ -7,29 +8,16 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "prototypes.h"
 #include "quarter_grid.h"
+#include "solid_block.h"
 #include "solid_node.h"
 #include "testing.h"
 #include "yeoh_part.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
-static bool inner_region(const void *self, int region, int ply)
-{
-  return region == 0;
-}
-
 /* ---- plain disc ---- */
 
 static const double a_m = 3.75e-3, b_m = 15e-3;
-
-/* Symmetry planes x = 0 and y = 0; the frame holds the edge. */
-static int disc_held(const void *self, const double X[3])
-{
-  if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
-    return 1 | 2 | 4;
-  }
-  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
-}
 
 struct disc {
   struct dea_grid *grid;
@@ -49,8 +37,8 @@ static struct disc disc_create(double H0, double pre_stretch, int order_z, size_
   const struct dea_solid_options options = {.order_z = order_z,
                                             .part_material_count = 1,
                                             .part_materials = &film,
-                                            .active = inner_region,
-                                            .held = disc_held};
+                                            .active = first_region,
+                                            .held = quarter_held};
   assert_int_equal(dea_solid_create(ctx, disc.grid, &options, &disc.solid), DEA_OK);
   for (size_t n = 0; n < disc.grid->node_count; n++) {
     const double *X = disc.grid->X + 3 * n;
@@ -117,27 +105,6 @@ TEST(test_steps_with_one_factor)
   disc_destroy(&alone);
 }
 
-/* A long load step takes few parts with the curvature of the part before, and ends in the state
- * that a descent finds; without it there were seven factors. */
-TEST(test_curvature)
-{
-  struct disc follows = disc_create(100e-6, 1.5, 2, 4, 2e-4);
-  struct disc descends = disc_create(100e-6, 1.5, 2, 4, 2e-4);
-  struct dea_solid_report one, other;
-  dea_solid_settings_of(descends.solid)->anderson_step_min = 2; // never
-  for (int step = 0; step < 2; step++) {
-    double V = 1e4 * step;
-    assert_int_equal(dea_load_steps_solve(ctx, follows.solid, V, &one), DEA_OK);
-    assert_int_equal(dea_load_steps_solve(ctx, descends.solid, V, &other), DEA_OK);
-  }
-  const double *u = dea_solid_displacement(follows.solid) + 3 * follows.edge;
-  print_message("%d and %d factorisations\n", one.factorisations, other.factorisations);
-  assert_close(u[0], dea_solid_displacement(descends.solid)[3 * descends.edge], 1e-9, 0);
-  assert_true(one.shifted == 0 && one.factorisations <= 5);
-  disc_destroy(&follows);
-  disc_destroy(&descends);
-}
-
 /* 0 to 11 kV in steps of 1 kV without help, no unstable mode on the way, within 0.4 % of the disc
  * without thickness. Elements of 0.2 mm at the electrode edge. */
 TEST(test_plain_disc_to_11_kV)
@@ -186,16 +153,6 @@ TEST(test_no_false_modes_at_rest)
 
 /* ---- the paper's actuator with four fibres, as built ---- */
 
-static int sheet_layer(const void *self, int region, int ply)
-{
-  return ply;
-}
-
-static bool film_inside(const void *self, int region, int ply)
-{
-  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
-}
-
 /* Pre-stretch 1.5, 100 um, PET fibres 2 mm x 100 um clamped at the frame, tip at the electrode
  * edge, against the programs of prototypes.h. */
 TEST(test_four_fibres_as_built)
@@ -209,9 +166,9 @@ TEST(test_four_fibres_as_built)
   const struct dea_solid_options options = {.order_z = 2,
                                             .part_material_count = 2,
                                             .part_materials = layers,
-                                            .part_material_of = sheet_layer,
-                                            .active = film_inside,
-                                            .held = disc_held};
+                                            .part_material_of = layer_of_ply,
+                                            .active = quarter_active,
+                                            .held = quarter_held};
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
@@ -293,7 +250,7 @@ static void make_solid(struct dea_context *failing)
 {
   const struct dea_part_material steel = dea_part_material_bonded((const double[]){1.2e6, 0});
   const struct dea_solid_options options = {
-      .order_z = 2, .part_material_count = 1, .part_materials = &steel, .held = disc_held};
+      .order_z = 2, .part_material_count = 1, .part_materials = &steel, .held = quarter_held};
   struct dea_solid *solid = NULL;
   struct dea_solid_report report;
   dea_status status = dea_solid_create(failing, small_grid, &options, &solid);

@@ -1,5 +1,5 @@
-/* Rigid bodies: energy, forces and tangent against each other at large turns, invariance, closed
- * forms, a part that is a million times stiffer. */
+/* Rigid bodies: energy, forces and tangent against each other at large turns, closed forms, a part
+ * that is a million times stiffer. */
 // ctest: solid
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
@@ -70,11 +70,6 @@ static void solve(struct bodies *it)
   assert_close(it->report.load_factor, 1, 0, 0);
 }
 
-static int clamped(const void *self, const double X[3])
-{
-  return X[0] < 1e-9 ? 7 : 0;
-}
-
 static int free_nodes(const void *self, const double X[3])
 {
   return 0;
@@ -105,34 +100,6 @@ static void hold_both(struct bodies *it)
     assert_int_equal(dea_solid_body_prescribe(ctx, it->solid, k, ALL, shifts[k], turns[k]), DEA_OK);
   }
   solve(it);
-}
-
-/* At turns of 60 and 15 degrees the followers lie where the rotation takes them. */
-TEST(test_followers_move_as_one)
-{
-  struct bodies it = two_bodies();
-  hold_both(&it);
-  double angle = sqrt(0.81 + 0.25 + 0.16), least = INFINITY, most = 0;
-  const double axis[3] = {0.9 / angle, -0.5 / angle, 0.4 / angle};
-  for (size_t n = 0; n < it.body[0].node; n++) {
-    const double *X = it.grid->X + 3 * n, *u = dea_solid_displacement(it.solid) + 3 * n;
-    if (third_and_part(X) == 1) { // Rodrigues' formula as it stands in textbooks
-      double r[3], along = 0;
-      for (int i = 0; i < 3; i++) {
-        r[i] = X[i] - two_centres[0][i];
-        along += axis[i] * r[i];
-      }
-      for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        double turned = r[i] * cos(angle) + (axis[j] * r[k] - axis[k] * r[j]) * sin(angle) +
-                        axis[i] * along * (1 - cos(angle));
-        least = fmin(least, u[i] - (shifts[0][i] + turned - r[i]));
-        most = fmax(most, u[i] - (shifts[0][i] + turned - r[i]));
-      }
-    }
-  }
-  assert_true(least > -1e-14 && most < 1e-14);
-  bodies_destroy(&it);
 }
 
 /* Forces of the supports of both bodies are the slopes of the least energy. */
@@ -288,11 +255,6 @@ TEST(test_frequencies_are_where_pivots_change)
 
 /* ---- invariance ---- */
 
-static int both_ends(const double X[3])
-{
-  return X[0] < 1e-9 ? 1 : X[0] > 2 - 1e-9 ? 2 : 0;
-}
-
 /* R of a rotation vector, and back. */
 static void rotation_of(const double w[3], double R[9])
 {
@@ -305,77 +267,11 @@ static void rotation_of(const double w[3], double R[9])
   }
 }
 
-static void vector_of(const double R[9], double w[3])
-{
-  double angle = acos(0.5 * (R[0] + R[4] + R[8] - 1)), size = 0.5 * angle / sin(angle);
-  w[0] = size * (R[7] - R[5]);
-  w[1] = size * (R[2] - R[6]);
-  w[2] = size * (R[3] - R[1]);
-}
-
-static void apply(const double R[9], const double v[3], double out[3])
-{
-  for (int i = 0; i < 3; i++) {
-    out[i] = R[3 * i] * v[0] + R[3 * i + 1] * v[1] + R[3 * i + 2] * v[2];
-  }
-}
-
-/* A bar between two bodies, bent and twisted, and the same turned by 80 degrees as a whole: the
- * energy stays, forces and moments turn. */
-TEST(test_turned_as_a_whole)
-{
-  static const double ends[BODIES_MAX][3] = {{0, 0.5, 0.5}, {2, 0.5, 0.5}}, origin[3] = {0};
-  static const double bend_t[3] = {-0.2, 0.3, 0.1}, bend_w[3] = {0.5, 0.3, -0.4};
-  static const double whole_w[3] = {-0.8, 0.9, 0.7}, whole_t[3] = {0.1, -0.2, 0.3};
-  const struct dea_part_material layer = dea_part_material_bonded(elastic);
-  struct bodies it = bodies_create(&bar, &layer, 1, 2, ends, 0, both_ends, free_nodes, NULL);
-  double Q[9], R[9], QR[9], w[3], t[3], x[3], force[2][3], moment[2][3], energy[2];
-  dea_solid_body_prescribe(ctx, it.solid, 0, ALL, origin, origin);
-  dea_solid_body_prescribe(ctx, it.solid, 1, ALL, bend_t, bend_w);
-  solve(&it);
-  energy[0] = it.report.energy_J;
-  dea_solid_body_reaction(it.solid, 1, force[0], moment[0]);
-  rotation_of(whole_w, Q);
-  rotation_of(bend_w, R);
-  for (int i = 0; i < 9; i++) {
-    QR[i] = Q[3 * (i / 3)] * R[i % 3] + Q[3 * (i / 3) + 1] * R[3 + i % 3] +
-            Q[3 * (i / 3) + 2] * R[6 + i % 3];
-  }
-  for (size_t k = 0; k < 2; k++) {
-    for (int i = 0; i < 3; i++) {
-      x[i] = ends[k][i] + (k == 1 ? bend_t[i] : 0);
-    }
-    apply(Q, x, t);
-    for (int i = 0; i < 3; i++) {
-      t[i] += whole_t[i] - ends[k][i];
-    }
-    vector_of(QR, w);
-    dea_solid_body_prescribe(ctx, it.solid, k, ALL, t, k == 0 ? whole_w : w);
-  }
-  solve(&it);
-  energy[1] = it.report.energy_J;
-  dea_solid_body_reaction(it.solid, 1, force[1], moment[1]);
-  double size = sqrt(force[0][0] * force[0][0] + force[0][1] * force[0][1]);
-  assert_close(energy[1], energy[0], 1e-9, 0);
-  apply(Q, force[0], x);
-  apply(Q, moment[0], w);
-  for (int i = 0; i < 3; i++) {
-    assert_close(force[1][i], x[i], 0, 1e-8 * size);
-    assert_close(moment[1][i], w[i], 0, 1e-8 * size);
-  }
-  bodies_destroy(&it);
-}
-
 /* ---- closed forms ---- */
 
 static int end_of_bar(const double X[3])
 {
   return X[0] > 2 - 1e-9;
-}
-
-static int on_planes(const void *self, const double X[3])
-{
-  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
 }
 
 /* A bar that keeps its width, its end on a body that only shifts: pulled to a place, then by the
@@ -605,11 +501,6 @@ static int none_follows(const double X[3])
   return 0;
 }
 
-static int layer_of_region(const void *self, int region, int ply)
-{
-  return region;
-}
-
 /* Bent and twisted by a dead force on a corner, the end of a bar moves alike whether it is rigid or
  * elastic and that much stiffer; turns of 20 degrees. */
 TEST(test_stiff_part)
@@ -641,65 +532,5 @@ TEST(test_stiff_part)
 }
 
 /* ---- what cannot be ---- */
-
-TEST(test_errors)
-{
-  const struct dea_part_material layer = dea_part_material_bonded(elastic);
-  struct dea_grid *grid = block_grid(ctx, &bar);
-  struct dea_solid *solid;
-  struct dea_solid_report report;
-  size_t node, nodes = grid->node_count;
-  const double X0[6] = {2, 0.5, 0.5, 2, 0.5, 0.5};
-  assert_int_equal(dea_grid_add_nodes(ctx, grid, 2, X0, &node), DEA_OK);
-  assert_int_equal(node, nodes);
-  int *follows = dea_alloc(ctx, grid->node_count, sizeof *follows);
-  struct dea_solid_body body = {.node = node};
-  struct dea_solid_options options = {.order_z = bar.order_z,
-                                      .part_material_count = 1,
-                                      .part_materials = &layer,
-                                      .held = clamped,
-                                      .body_count = 1,
-                                      .bodies = &body,
-                                      .body_of = follows};
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "no node follows body 0"));
-  for (size_t n = 0; n < nodes; n++) {
-    follows[n] = end_of_bar(grid->X + 3 * n);
-  }
-  options.field = DEA_SOLID_FIELD_COUPLED;
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_UNSUPPORTED);
-  options.field = DEA_SOLID_FIELD_THIN;
-  options.held = on_planes;
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "hold the body instead"));
-  body.node = 0;
-  options.held = clamped;
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "two nodes of its own"));
-  body.node = node;
-  options.held = free_nodes;
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "is not held"));
-  const double none[3] = {0};
-  assert_int_equal(dea_solid_prescribe(ctx, solid, dea_grid_nearest(grid, X0), 1, none),
-                   DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "follows a body"));
-  assert_int_equal(dea_solid_body_prescribe(ctx, solid, 0, ALL, none, none), DEA_OK);
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK); // held by its body alone
-  assert_int_equal(dea_solid_body_prescribe(ctx, solid, 1, ALL, none, none), DEA_E_ARGUMENT);
-  dea_solid_destroy(ctx, solid);
-  for (size_t n = 0; n < nodes; n++) { // an edge along x, which the body can turn about
-    follows[n] = grid->X[3 * n + 1] < 1e-9 && grid->X[3 * n + 2] < 1e-9 && grid->X[3 * n] > 1;
-  }
-  grid->X[3 * node + 1] = grid->X[3 * node + 2] = 0;
-  options.held = clamped;
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "can turn without moving"));
-  dea_solid_destroy(ctx, solid);
-  dea_free(ctx, follows);
-  dea_grid_destroy(ctx, grid);
-}
 
 TESTS(solid_set_up, solid_tear_down)

@@ -1,5 +1,5 @@
-/* Stability of solids: modes of a clamped strip, buckling of a compressed strip
- * against Euler, both sides of the pitchfork, and solves that leave an unstable equilibrium. */
+/* Stability of solids: both sides of the pitchfork of a compressed strip, solves that leave an
+ * unstable equilibrium, modes of a plate. */
 // ctest: solid
 #include "model/solid/element/hex_shape.h"
 #include "model/solid/equilibrium/load_steps.h"
@@ -29,7 +29,7 @@ static void map_strip(const void *self, double s, double t, double x[2])
   x[1] = width * t;
 }
 
-static int clamped(const void *self, const double X[3])
+static int clamped_ends(const void *self, const double X[3])
 {
   return X[0] < 1e-9 || X[0] > length - 1e-9 ? 7 : 0;
 }
@@ -45,7 +45,7 @@ static void create(void)
   const struct dea_ply ply = {thickness, 1, 2};
   const struct dea_part_material layer = dea_part_material_bonded(elastic);
   const struct dea_solid_options options = {
-      .order_z = 2, .part_material_count = 1, .part_materials = &layer, .held = clamped};
+      .order_z = 2, .part_material_count = 1, .part_materials = &layer, .held = clamped_ends};
   assert_ok(dea_grid_create(ctx, ORDER, &block, 1, &ply, 1, NULL, -0.5 * thickness, length, &grid));
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
 }
@@ -76,33 +76,6 @@ static double middle_z(void)
     most = fabs(z) > fabs(most) ? z : most;
   }
   return most;
-}
-
-/* Euler: clamped ends, strain pi^2/3 (h/L)^2 for a thin strip, E from mu with nu = 0. The strain at
- * which the lowest mode has no stiffness, by bisection on the flat path. */
-TEST(test_strip_buckles_at_eulers_strain)
-{
-  const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
-  double below = 0.8 * euler, above = 1.2 * euler, value;
-  create();
-  dea_solid_accept_unstable(solid, true);
-  compress(below);
-  assert_int_equal(report.unstable_modes, 0);
-  compress(above);
-  assert_int_equal(report.unstable_modes, 1);
-  assert_ok(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, 1, &value, NULL));
-  assert_true(value < 0);
-  for (int i = 0; i < 8; i++) {
-    double middle = 0.5 * (below + above);
-    destroy(); // from rest: a descent from an unstable state would find the buckled one
-    create();
-    dea_solid_accept_unstable(solid, true);
-    compress(middle);
-    assert_close(middle_z(), 0, 0, 1e-6);
-    *(report.unstable_modes > 0 ? &above : &below) = middle;
-  }
-  assert_close(0.5 * (below + above), euler, 1e-2, 0);
-  destroy();
 }
 
 /* Pitchfork: left to either side the strip has the same energy, below that of the flat one, and is
@@ -150,34 +123,6 @@ TEST(test_a_solve_leaves_what_is_unstable)
   assert_true(report.snapped);
   assert_int_equal(report.unstable_modes, 0);
   assert_true(fabs(middle_z()) > 0.5 * thickness);
-  destroy();
-}
-
-/* Bending of a strip that is clamped at both ends: lambda = (E h^2/12) beta^4, beta L = 4.730041
- * and 7.853205. */
-TEST(test_modes_of_a_clamped_strip)
-{
-  enum { COUNT = 6 };
-  const double D = 2 * mu * thickness * thickness / 12;
-  double value[COUNT];
-  create();
-  compress(0);
-  double *vector = dea_alloc(ctx, COUNT * 3 * grid->node_count, sizeof *vector);
-  assert_non_null(vector);
-  assert_ok(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector));
-  for (int k = 1; k < COUNT; k++) {
-    assert_true(value[k] >= value[k - 1]);
-  }
-  assert_close(value[0], D * pow(4.730041 / length, 4), 2e-2, 0);
-  assert_close(value[1], D * pow(7.853205 / length, 4), 3e-2, 0);
-  for (size_t n = 0; n < grid->node_count; n++) { // clamped, and the first mode bends one way only
-    const double *X = grid->X + 3 * n;
-    assert_true(!clamped(NULL, X) || vector[3 * n + 2] == 0);
-    assert_true(vector[3 * n + 2] >= 0);
-  }
-  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, 0, value, NULL),
-                   DEA_E_ARGUMENT);
-  dea_free(ctx, vector);
   destroy();
 }
 

@@ -1,17 +1,15 @@
-/* Electrodes on several voltages: a stack, charge by channel, reciprocity, charge and force. */
+/* Electrodes on several voltages: charge by channel, reciprocity, response. */
 // ctest: solid
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/film_state.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/motion/response.h"
+#include "solid_block.h"
 #include "testing.h"
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
-#include "message_fixture.h"
-
 #include <stdlib.h>
-#include <string.h>
 
 static const double h_m = 44e-6, length_m = 4e-3;
 
@@ -181,136 +179,7 @@ TEST(test_charges_follow_voltages)
   check_matrix(false, 1e-6);
 }
 
-/* Equilibrium with the end pulled out by so much; force of its support and charge of channel 1. */
-static void pull_end(struct strip *it, double first_V, double by_m, double *force_N,
-                     double *charge_C)
-{
-  const double end[3] = {by_m, 0, 0};
-  double charge[3];
-  for (size_t n = 0; n < it->grid->node_count; n++) {
-    if (it->grid->X[3 * n] > length_m - 1e-9) {
-      assert_int_equal(dea_solid_prescribe(ctx, it->solid, n, 1, end), DEA_OK);
-    }
-  }
-  solve_at(it, 0, first_V, 2e3);
-  *force_N = 0;
-  for (size_t n = 0; n < it->grid->node_count; n++) {
-    if (it->grid->X[3 * n] > length_m - 1e-9) {
-      *force_N += dea_solid_reaction(it->solid)[3 * n];
-    }
-  }
-  assert_int_equal(dea_solid_charges(ctx, it->solid, charge), DEA_OK);
-  *charge_C = charge[1];
-}
-
-/* Force of the support dW/dx and charge -dW/dV come from one energy: dF/dV = -dQ/dx. */
-TEST(test_force_and_charge)
-{
-  const double none[2] = {0, 0}, V = 3e3, x = 0.1e-3, step_V = 10, step_m = 1e-6;
-  struct strip strip = strip_create(true, 2, none);
-  double force[4], charge[4];
-  pull_end(&strip, V, x - step_m, &force[0], &charge[0]);
-  pull_end(&strip, V, x + step_m, &force[1], &charge[1]);
-  pull_end(&strip, V - step_V, x, &force[2], &charge[2]);
-  pull_end(&strip, V + step_V, x, &force[3], &charge[3]);
-  double by_V = (force[3] - force[2]) / (2 * step_V);
-  double by_x = (charge[1] - charge[0]) / (2 * step_m);
-  print_message("dF/dV %.9g, -dQ/dx %.9g nC/m\n", 1e9 * by_V, -1e9 * by_x);
-  assert_true(fabs(by_x) > 1e-9);
-  assert_close(by_V, -by_x, 1e-5, 0);
-  strip_destroy(&strip);
-}
-
 /* ---- a stack of films with electrodes between them ---- */
-
-enum { FILMS = 4 };
-
-static void map_square(const void *self, double s, double t, double x[2])
-{
-  x[0] = length_m * s;
-  x[1] = length_m * t;
-}
-
-static bool everywhere(const void *self, int region, int ply)
-{
-  return true;
-}
-
-static void alternating(const void *self, int region, int ply, int *top, int *bottom)
-{
-  *bottom = ply % 2;
-  *top = 1 - ply % 2;
-}
-
-/* Pulled out in its plane and let go in thickness: a corner of a stack between mirror planes. */
-static int corner(const void *self, const double X[3])
-{
-  return (X[0] < 1e-9 || X[0] > length_m - 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) |
-         (X[2] < 1e-9 ? 4 : 0);
-}
-
-/* Width and charge of films of some thickness each at a voltage. */
-static void solve_stack(size_t films, double thickness_m, double voltage_V, double *width_m,
-                        double *charge_C)
-{
-  static const double cuts[] = {0, 1};
-  const struct dea_block block = {map_square, NULL, cuts, cuts, 1, 1, 0};
-  const struct dea_part_material film = film_of(thickness_m);
-  struct dea_ply plies[FILMS];
-  for (size_t i = 0; i < films; i++) {
-    plies[i] = (struct dea_ply){thickness_m, 1, 2};
-  }
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .part_material_count = 1,
-                                            .part_materials = &film,
-                                            .active = everywhere,
-                                            .channels = alternating,
-                                            .channel_count = 1,
-                                            .held = corner};
-  struct dea_grid *grid;
-  struct dea_solid *solid;
-  struct dea_solid_report report;
-  double charge[2];
-  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, plies, films, NULL, 0, length_m, &grid),
-                   DEA_OK);
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
-  for (int step = 0; step <= 4; step++) {
-    assert_int_equal(dea_load_steps_solve(ctx, solid, 0.25 * step * voltage_V, &report), DEA_OK);
-  }
-  const double top[3] = {length_m, length_m, 0};
-  *width_m = length_m + dea_solid_displacement(solid)[3 * dea_grid_nearest(grid, top) + 1];
-  assert_int_equal(dea_solid_charges(ctx, solid, charge), DEA_OK);
-  assert_close(charge[0], -charge[1], 1e-12, 0);
-  *charge_C = charge[1];
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
-}
-
-/* n films in parallel are one film n times as thick at n times the voltage, and carry n times the
- * charge that one of them carries. */
-TEST(test_stack)
-{
-  const double voltage_V = 1500;
-  double width[3], charge[3];
-  solve_stack(FILMS, h_m, voltage_V, &width[0], &charge[0]);
-  solve_stack(1, FILMS * h_m, FILMS * voltage_V, &width[1], &charge[1]);
-  solve_stack(1, h_m, voltage_V, &width[2], &charge[2]);
-  print_message("width %.12g, %.12g, %.12g mm; charge %.12g, %.12g, %.12g nC\n", 1e3 * width[0],
-                1e3 * width[1], 1e3 * width[2], 1e9 * charge[0], 1e9 * charge[1], 1e9 * charge[2]);
-  assert_true(width[0] < 0.9 * length_m); // the free side has come in
-  assert_close(width[0], width[1], 1e-8, 0);
-  assert_close(width[0], width[2], 1e-8, 0);
-  assert_close(charge[0], FILMS * charge[2], 1e-8, 0);
-  assert_close(charge[0], FILMS * charge[1], 1e-8, 0); // epsilon A V/h is that of one film
-}
-
-/* ---- what is refused ---- */
-
-static void unknown_channel(const void *self, int region, int ply, int *top, int *bottom)
-{
-  *top = 2;
-  *bottom = 0;
-}
 
 /* The static response to an AC excitation of the whole, where channels are at voltages of their
  * own, against equilibria on both sides. */
@@ -345,39 +214,6 @@ TEST(test_response_about_own_voltages)
   assert_true(off < 1e-5 * most);
   dea_solid_response_destroy(ctx, response);
   free(slope);
-  strip_destroy(&strip);
-}
-
-static bool no_electrode(const void *self, const double X[3], double *share)
-{
-  *share = X[2] > 0 ? 1 : 0;
-  return true;
-}
-
-TEST(test_refused)
-{
-  struct strip strip = strip_create(false, 2, NULL);
-  const struct dea_part_material film = film_of(h_m);
-  struct dea_solid_options options = {.order_z = 2,
-                                      .part_material_count = 1,
-                                      .part_materials = &film,
-                                      .active = everywhere,
-                                      .channels = unknown_channel,
-                                      .channel_count = 1,
-                                      .held = framed};
-  struct dea_solid *solid;
-  assert_message(dea_solid_create(ctx, strip.grid, &options, &solid), DEA_E_ARGUMENT,
-                 "there is no channel 2: 1 of them");
-  options.channels = two_channels;
-  options.channel_count = 2;
-  options.field = DEA_SOLID_FIELD_COUPLED;
-  options.electrode = no_electrode;
-  assert_message(dea_solid_create(ctx, strip.grid, &options, &solid), DEA_E_UNSUPPORTED,
-                 "a coupled field has one channel");
-  solve_at(&strip, 1e3, 500, 0);
-  double capacitance;
-  assert_int_equal(dea_solid_capacitance(ctx, strip.solid, &capacitance), DEA_OK);
-  assert_true(isnan(capacitance)); // over which voltage?
   strip_destroy(&strip);
 }
 

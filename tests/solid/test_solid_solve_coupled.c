@@ -3,6 +3,7 @@
 #include "failing_allocator.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "quarter_grid.h"
+#include "solid_block.h"
 #include "solid_node.h"
 #include "testing.h"
 #include "yeoh_part.h"
@@ -22,16 +23,6 @@ static struct dea_part_material film(double pre_stretch, double thickness_m)
 struct location {
   double a, b, h; // radius of the electrode, of the frame or length of a strip, thickness
 };
-
-static int sheet_layer(const void *self, int region, int ply)
-{
-  return ply;
-}
-
-static bool electrode_film(const void *self, int region, int ply)
-{
-  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
-}
 
 /* Ground below, voltage on top of the film, inside the radius a. */
 static bool faces(const void *self, const double X[3], double *share)
@@ -58,8 +49,8 @@ static struct dea_solid_options options_of(enum dea_solid_field_kind field,
                                     .field = field,
                                     .part_material_count = count,
                                     .part_materials = materials,
-                                    .part_material_of = sheet_layer,
-                                    .active = electrode_film,
+                                    .part_material_of = layer_of_ply,
+                                    .active = quarter_active,
                                     .held = disc_held,
                                     .electrode = faces,
                                     .self = self};
@@ -147,11 +138,6 @@ static bool strip_faces(const void *self, const double X[3], double *share)
   const struct location *p = self;
   *share = X[2] > 0 ? 1 : 0;
   return X[0] < p->a * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * p->h) < 1e-6 * p->h;
-}
-
-static bool everywhere(const void *self, int region, int ply)
-{
-  return true;
 }
 
 /* Strip of a film, length b, electrodes up to x = a; cuts: [count + 1] ascending from 0 to 1;
@@ -304,30 +290,6 @@ TEST(test_fibres_loads_and_axes)
 }
 
 /* ---- what cannot be ---- */
-
-static bool no_electrode(const void *self, const double X[3], double *share)
-{
-  *share = 1;
-  return false;
-}
-
-TEST(test_a_field_needs_electrodes)
-{
-  struct body body = {.location = {3.75e-3, 15e-3, 44e-6}};
-  struct dea_part_material soft = film(1.5, 44e-6);
-  const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, 44e-6, .fine = 1};
-  struct dea_solid_options options = options_of(DEA_SOLID_FIELD_COUPLED, &soft, 1, &body.location);
-  options.electrode = no_electrode;
-  assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
-  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_ARGUMENT);
-  options.electrode = NULL;
-  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_ARGUMENT);
-  assert_non_null(strstr(dea_context_message(ctx), "electrodes"));
-  options.electrode = faces;
-  soft.permittivity_slope_F_per_m = 1e-12;
-  assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_UNSUPPORTED);
-  body_destroy(&body);
-}
 
 static struct dea_grid *small_grid;
 static const struct location small_place = {3.75e-3, 15e-3, 44e-6};

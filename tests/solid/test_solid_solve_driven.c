@@ -1,4 +1,4 @@
-/* Model 3d in time: circuit, steps that are dropped, balance of energy, where it comes to rest. */
+/* Model 3d in time: creep to where it comes to rest, also under a tip. */
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
@@ -90,47 +90,6 @@ TEST(test_creep_to_the_equilibrium)
   assert_close(ends[1].electrode_edge_u_m, ends[0].electrode_edge_u_m, 1e-7, 0);
   assert_close(ends[1].supply_work_J, ends[0].supply_work_J, 1e-7, 0);
   assert_close(ends[1].dissipated_J, ends[0].dissipated_J, 1e-7, 0);
-}
-
-/* At a small voltage the capacitance stays, and a resistor charges it as every first-year student
- * knows. */
-TEST(test_resistor)
-{
-  const struct dea_device device = viscous_disc();
-  struct dea_model *model = model_create(&device);
-  const double V = 50, R = 1e9;
-  struct dea_load_point p = begin(model, R, false);
-  double tau = R * p.capacitance_F;
-  p = go(model, 0, V, true); // the supply jumps, the film does not
-  assert_close(p.voltage_V, 0, 0, 1e-6);
-  for (int i = 1; i <= 4; i++) {
-    p = go(model, 0.5 * tau, V, true);
-    assert_close(p.voltage_V, V * (1 - exp(-0.5 * i)), 1e-4, 0);
-    assert_close(p.current_A, (V - p.voltage_V) / R, 1e-9, 0);
-  }
-  assert_close(balance(&p), 0, 0, 2e-3);
-  type->destroy(ctx, model);
-}
-
-/* With mass the film overshoots after a jump, and the account of its energy closes. */
-TEST(test_inertia)
-{
-  struct dea_device device = viscous_disc();
-  device.film.branch_count = 0;
-  struct dea_model *model = model_create(&device);
-  struct dea_load_point p = begin(model, 0, true), still;
-  double most = 0;
-  p = go(model, 0, 1e3, true);
-  assert_close(p.electrode_edge_u_m, 0, 0, 1e-12);
-  for (int i = 0; i < 40; i++) {
-    p = go(model, 1e-5, 1e3, true);
-    most = fmax(most, p.electrode_edge_u_m);
-    assert_true(p.kinetic_energy_J > 0);
-  }
-  assert_close(balance(&p), 0, 0, 5e-3);
-  assert_int_equal(type->solve(ctx, model, 1e3, &still), DEA_OK);
-  assert_true(most > 1.3 * still.electrode_edge_u_m);
-  type->destroy(ctx, model);
 }
 
 /* A tip that is pressed in first is relieved by the voltage, and stays where it is. */

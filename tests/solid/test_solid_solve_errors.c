@@ -3,6 +3,7 @@
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
+#include "solid_block.h"
 #include "testing.h"
 #include "yeoh_part.h"
 
@@ -17,11 +18,6 @@ static void map_square(const void *self, double s, double t, double x[2])
 {
   x[0] = 1e-2 * s;
   x[1] = 1e-2 * t;
-}
-
-static bool everywhere(const void *self, int region, int ply)
-{
-  return true;
 }
 
 /* self: bits held at the edges x = 0 and x = 1 cm, of all nodes there. */
@@ -137,31 +133,6 @@ TEST(test_voltage_beyond_any_equilibrium)
   clear();
 }
 
-/* A descent that has lost its way - the forces stay as large as those of the elements - is given up
- * after `max_divergent` iterations out of balance, well before all of its iterations are used up.
- */
-TEST(test_divergence_is_seen)
-{
-  struct dea_part_material layer = film();
-  dea_part_material_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
-  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
-  static const int held[] = {7, 0};
-  struct dea_solid_settings early = dea_solid_settings_default();
-  struct dea_solid_report all, few;
-  assert_int_equal(solve(&layer, held, 20e3), DEA_OK);
-  assert_int_equal(dea_load_steps_solve_within(ctx, solid, 400e3, 1, &all), DEA_E_NOT_CONVERGED);
-  clear();
-  early.max_divergent = 12;
-  settings = &early;
-  assert_int_equal(solve(&layer, held, 20e3), DEA_OK);
-  assert_int_equal(dea_load_steps_solve_within(ctx, solid, 400e3, 1, &few), DEA_E_NOT_CONVERGED);
-  settings = NULL;
-  expect("iterations in a row are out of balance");
-  print_message("%d iterations, %d in all\n", few.iterations, all.iterations);
-  assert_true(2 * few.iterations < all.iterations);
-  clear();
-}
-
 /* Address space of this process [bytes]. */
 static rlim_t address_space(void)
 {
@@ -215,32 +186,6 @@ TEST(test_memory_that_runs_out)
   assert_int_equal(status, DEA_OK);
   assert_true(failed > 2 && by_petsc > 0);
   clear();
-}
-
-/* Each setting is one that the solver goes by, and one that cannot be is refused by its name. */
-TEST(test_settings)
-{
-  const struct dea_part_material layer = film();
-  static const int held[] = {7, 0};
-  struct dea_solid_settings own = dea_solid_settings_default();
-  settings = &own;
-  assert_int_equal(solve(&layer, held, 10e3), DEA_OK);
-  clear();
-  own.newton_max_iterations = 1;
-  assert_int_equal(solve(&layer, held, 10e3), DEA_E_NOT_CONVERGED);
-  expect("no equilibrium after 1 iterations");
-  clear();
-  own = dea_solid_settings_default();
-  own.shift_initial = 0;
-  assert_int_equal(solve(&layer, held, 0), DEA_E_ARGUMENT);
-  expect("the setting shift_initial has to be above 0");
-  clear();
-  own = dea_solid_settings_default();
-  own.descent_bulk_factor = 0.1;
-  assert_int_equal(solve(&layer, held, 0), DEA_E_ARGUMENT);
-  expect("descent_bulk_factor has to be a power of 2");
-  clear();
-  settings = NULL;
 }
 
 static bool after_two(void *user)

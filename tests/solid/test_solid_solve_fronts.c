@@ -129,28 +129,6 @@ TEST(test_solves)
   }
 }
 
-/* A block more in K is seen. */
-TEST(test_fits)
-{
-  static const struct net chain = {{6, 1, 1}, 0, 1};
-  static const PetscInt ends[2] = {0, 5};
-  const double block[36] = {0.1};
-  struct dea_fronts *fronts;
-  Mat K = make(&chain, 3);
-  assert_int_equal(dea_fronts_create(ctx, K, &fronts), DEA_OK);
-  MatSetOption(K, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE);
-  MatZeroEntries(K);
-  MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY);
-  MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY);
-  assert_true(dea_fronts_fit(fronts, K));
-  assert_int_equal(MatSetValuesBlocked(K, 2, ends, 2, ends, block, ADD_VALUES), 0);
-  MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY);
-  MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY);
-  assert_false(dea_fronts_fit(fronts, K));
-  dea_fronts_destroy(ctx, fronts);
-  MatDestroy(&K);
-}
-
 /* A negative eigenvalue, and one of 0 but for rounding, wherever its pivot comes; the next factor
  * knows nothing of it. */
 TEST(test_refuses)

@@ -291,24 +291,6 @@ TEST(test_membrane_with_weight)
   check_some(&at, &linear_membrane, numbers, 5, shares, 2, 0);
 }
 
-/* With all lengths and the voltage s times as large a device vibrates at 1/s of its frequency. */
-TEST(test_frequency_of_all_lengths)
-{
-  static const int lengths[] = {VOLTAGE, THICKNESS, ELECTRODE,       FRAME, TIP,
-                                WIDTH,   TIP_WIDTH, FIBRE_THICKNESS, GLUE};
-  static const enum dea_solid_film films[] = {DEA_FILM_SOLID, DEA_FILM_MEMBRANE};
-  struct state at = heavy_star();
-  for (int f = 0; f < 2; f++) {
-    double slopes[NUMBERS * KEYS], sum = 0;
-    const struct dea_model_settings settings = {.film = films[f]};
-    const double base_Hz = find_slopes(&at, &settings, lengths, 9, slopes, NULL).frequency_Hz;
-    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
-      sum += slopes[i * KEYS + FREQUENCY] / base_Hz;
-    }
-    assert_close(sum, -1, 1e-4, 0);
-  }
-}
-
 enum { MODES = 3 };
 
 /* Frequencies of the lowest modes of a membrane, by itself or on the mesh of another one. */
@@ -453,29 +435,6 @@ TEST(test_laws_of_a_coupled_field)
   }
   assert_close(slopes[VOLTAGE * KEYS + ENERGY], -base.capacitance_F * at.voltage_V * at.voltage_V,
                1e-7, 0);
-}
-
-/* A change of the order of the parts: the tip comes to lie off the electrode. */
-TEST(test_mesh_that_cannot_follow)
-{
-  struct state at = star(), sides[2] = {at, at};
-  struct dea_model *model = NULL;
-  double slope;
-  const struct dea_model_settings settings = {0};
-  const int column = dea_point_column_find("centre_z_m");
-  at.device.fibre_tip_radius_m = at.device.electrode_radius_m;
-  for (int k = 0; k < 2; k++) {
-    sides[k].device.fibre_tip_radius_m =
-        (k == 0 ? 0.99999 : 1.00001) * at.device.electrode_radius_m;
-  }
-  solve(&at, &settings, NULL, &model);
-  const struct dea_design_change change = {
-      {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1, {NULL, NULL}};
-  const struct dea_gradient_request ask = {
-      .changes = &change, .change_count = 1, .columns = &column, .column_count = 1};
-  assert_int_equal(solid->gradient(ctx, model, &ask, &slope), DEA_OK);
-  assert_true(isnan(slope));
-  solid->destroy(ctx, model);
 }
 
 /* ---- a tip ---- */

@@ -14,17 +14,12 @@
 static const struct block slab = {{3, 2, 0.5}, {2, 3, 1}, 2, 2};
 static const double rho = 970;
 
-static int end_held(const void *self, const double X[3])
-{
-  return X[0] < 1e-9 ? 7 : 0;
-}
-
 TEST(test_inertia_of_rigid_motions)
 {
   struct dea_part_material layer = dea_part_material_bonded((const double[]){2, 0});
   layer.density_kg_per_m3 = rho;
   struct dea_grid *grid = block_grid(ctx, &slab);
-  struct dea_solid *solid = block_solid(ctx, grid, slab.order_z, &layer, end_held);
+  struct dea_solid *solid = block_solid(ctx, grid, slab.order_z, &layer, clamped);
   double *v = calloc(3 * grid->node_count, sizeof *v);
   double *inertia = calloc(3 * grid->node_count, sizeof *inertia);
   assert_true(v != NULL && inertia != NULL);

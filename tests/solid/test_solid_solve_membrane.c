@@ -1,4 +1,4 @@
-/* Membrane film by PETSc: the exact disc, false unstable modes, films without stiffness, fibres. */
+/* Membrane film by PETSc: the exact disc, false unstable modes, films without stiffness. */
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
@@ -6,7 +6,6 @@
 #include "model/solid/assembly/solid.h"
 #include "model/solid/element/membrane.h"
 #include "model/solid/equilibrium/load_steps.h"
-#include "prototypes.h"
 #include "quarter_grid.h"
 #include "testing.h"
 
@@ -26,15 +25,6 @@ static int layer_of(const void *self, int region, int ply)
 static bool active(const void *self, int region, int ply)
 {
   return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_SURFACE;
-}
-
-/* Symmetry planes x = 0 and y = 0; the frame holds the edge. */
-static int held(const void *self, const double X[3])
-{
-  if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
-    return 1 | 2 | 4;
-  }
-  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
 }
 
 struct actuator {
@@ -70,7 +60,7 @@ static struct actuator actuator_create(const struct dea_quarter *mesh, double pr
                                             .part_materials = layers,
                                             .part_material_of = layer_of,
                                             .active = active,
-                                            .held = held};
+                                            .held = quarter_held};
   assert_int_equal(dea_solid_create(ctx, it.grid, &options, &it.solid), DEA_OK);
   return it;
 }
@@ -184,48 +174,6 @@ TEST(test_slack_film)
   assert_true(extremes.true_field_V_per_m > 4e3 / 100e-6 * 1.02); // it thins all the same
   actuator_destroy(&stiff);
   actuator_destroy(&slack);
-}
-
-/* The paper's actuator with four fibres as built, see test_solid_solve.c. Against the membrane of
- * prototypes.h. */
-TEST(test_four_fibres_as_built)
-{
-  struct actuator it = actuator_create(&(struct dea_quarter){2, 2, a_m, b_m, 0, 4, 2e-3, 100e-6,
-                                                             .fine = 3, .across = 2, .edge = 1e-4},
-                                       1.5, false);
-  const double h = 100e-6 / 2.25;
-  int iterations = 0;
-  solve(&it, 0);
-  assert_close(displacement_at(&it, a_m, 0, 0.5 * h)[2], 0, 0, 1e-12);
-  for (int kV = 1; kV <= 6; kV++) {
-    solve(&it, 1e3 * kV);
-    iterations += it.report.iterations;
-  }
-  assert_close(displacement_at(&it, a_m, 0, 0.5 * h)[2], prototype_membrane_tip_6kV_m, 4e-2, 0);
-  assert_close(displacement_at(&it, 0, 0, 0)[2], prototype_membrane_centre_6kV_m, 4e-2, 0);
-  assert_true(iterations < 40); // no multipliers
-  actuator_destroy(&it);
-}
-
-TEST(test_law_that_is_refused)
-{
-  const struct dea_part_material layer = {.law = dea_law_find("holzapfel-gasser-ogden"),
-                                          .param = {100e3, 400e3, 0.8, 0.1},
-                                          .pre_stretch = {1, 1, 1},
-                                          .thickness_m = 1e-4};
-  const struct dea_solid_options options = {.order_z = 1,
-                                            .part_material_count = 1,
-                                            .part_materials = &layer,
-                                            .part_material_of = layer_of,
-                                            .active = active,
-                                            .held = held};
-  const struct dea_quarter quarter = {2, 1, a_m, b_m, .fine = 1, .membrane = true};
-  struct dea_grid *grid;
-  struct dea_solid *solid;
-  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
-  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_E_UNSUPPORTED);
-  assert_null(solid);
-  dea_grid_destroy(ctx, grid);
 }
 
 TESTS(solid_set_up, solid_tear_down)

@@ -10,7 +10,6 @@
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
 #include <math.h>
-#include <string.h>
 
 extern const struct dea_model_type dea_solid_module;
 static const struct dea_model_type *const solid = &dea_solid_module;
@@ -231,19 +230,6 @@ TEST(test_profile)
 
 /* ---- against itself ---- */
 
-/* Of the whole actuator on both domains: at rest eps A/h. */
-TEST(test_capacitance_of_the_whole)
-{
-  double h = 100e-6 / 2.25, exact = 2.8 * DEA_EPSILON_0 * acos(-1) * 3.75e-3 * 3.75e-3 / h;
-  for (size_t i = 0; i < 2; i++) {
-    struct dea_device device = plain();
-    struct dea_model_settings whole = *films[i];
-    whole.domain = DEA_DOMAIN_DISC;
-    assert_close(solve(solid, &device, films[i], 0).capacitance_F, exact, 1e-4, 0);
-    assert_close(solve(solid, &device, &whole, 0).capacitance_F, exact, 1e-4, 0);
-  }
-}
-
 /* The charge is minus the derivative of the energy by the voltage. */
 static void check_charge(const struct dea_model_settings *settings, double voltage_V)
 {
@@ -320,34 +306,6 @@ TEST(test_kinds_of_fibres)
   device.bond_thickness_m = 50e-6;
   device.bond_modulus_Pa = 1e6;
   assert_true(solve(solid, &device, NULL, 2e3).electrode_edge_u_m > 1.005 * edge);
-}
-
-TEST(test_what_it_refuses)
-{
-  struct dea_device device = plain();
-  struct dea_model *model;
-  device.electrode = test_material("holzapfel-gasser-ogden", 100e3, 400e3, 0.8);
-  device.electrode_thickness_m = 5e-6;
-  assert_int_equal(solid->create(ctx, &device, &membrane, &model), DEA_E_DESIGN);
-  assert_null(model);
-}
-
-/* The potential as an unknown: the plates seem longer by the fringe in the film, h ln 4/(2 pi), and
- * by up to another 1/9 of the quarter of a millimetre of the elements at their edge. */
-TEST(test_potential)
-{
-  struct dea_device device = plain();
-  double thin_F = solve(solid, &device, NULL, 4e3).capacitance_F;
-  double a = device.electrode_radius_m, fringe = device.film_thickness_m * log(4) / (2 * acos(-1));
-  double least = (a + fringe) / a, most = (a + fringe + 0.25e-3 / 9) / a;
-  struct dea_model_settings settings = {.field = DEA_FIELD_COUPLED};
-  struct dea_load_point point = solve(solid, &device, &settings, 4e3);
-  assert_true(point.capacitance_F > thin_F * least * least);
-  assert_true(point.capacitance_F < thin_F * most * most);
-  settings.film = DEA_FILM_MEMBRANE;
-  struct dea_model *model;
-  assert_int_equal(solid->create(ctx, &device, &settings, &model), DEA_E_UNSUPPORTED);
-  assert_non_null(strstr(dea_context_message(ctx), "compute.solid.film: solid"));
 }
 
 static int tear_down(void **state)

@@ -91,34 +91,4 @@ TEST(test_answer_to_a_slow_ripple)
   dea_solid_module.destroy(ctx, model);
 }
 
-/* A film with a branch answers slowly as one without does, less when it is fast, and lags between.
- * By little: what a voltage does to the tension does not depend on the film's stiffness. */
-TEST(test_answer_of_a_viscous_film)
-{
-  const struct dea_ac_excitation excitation = {.amplitude_V = 1};
-  const double frequency_Hz[] = {1e-4, 1, 20};
-  struct dea_device d = test_star(4);
-  struct dea_load_point at, elastic[3], viscous[3];
-  d.film.density_kg_per_m3 = 970;
-  d.fibre.density_kg_per_m3 = 1375;
-  for (int k = 0; k < 2; k++) {
-    struct dea_model *model = create(&d, NULL);
-    assert_int_equal(dea_solid_module.solve(ctx, model, 3000, &at), DEA_OK);
-    assert_ok(dea_solid_module.respond(ctx, model, &at, &excitation, frequency_Hz, 3,
-                                       k == 0 ? elastic : viscous));
-    dea_solid_module.destroy(ctx, model);
-    d.film.branch_count = 1;
-    d.film.branches[0] = (struct dea_branch){100e3, 0.16};
-  }
-  assert_close(viscous[0].centre_amplitude_m, elastic[0].centre_amplitude_m, 1e-4, 0);
-  assert_true(viscous[2].centre_amplitude_m < 0.99 * elastic[2].centre_amplitude_m);
-  assert_true(viscous[1].centre_amplitude_m < viscous[0].centre_amplitude_m);
-  assert_true(viscous[1].centre_amplitude_m > viscous[2].centre_amplitude_m);
-  double lag[3];
-  for (int i = 0; i < 3; i++) {
-    lag[i] = remainder(elastic[i].centre_phase_rad - viscous[i].centre_phase_rad, 2 * pi);
-  }
-  assert_true(lag[1] > 0.005 && lag[1] > lag[0] && lag[1] > lag[2] && lag[2] > 0);
-}
-
 TESTS(solid_set_up, solid_tear_down)

@@ -119,20 +119,6 @@ TEST(test_rest)
   }
 }
 
-/* The whole disc has the symmetric answer of the sector. */
-TEST(test_domains_agree)
-{
-  struct dea_device device = test_star(3);
-  struct dea_load_point sector = solve_once(&device, &preview, 3e3);
-  const struct dea_model_settings whole = {.film = DEA_FILM_MEMBRANE, .domain = DEA_DOMAIN_DISC};
-  struct dea_load_point disc = solve_once(&device, &whole, 3e3);
-  assert_close(disc.fibre_tip_z_m, sector.fibre_tip_z_m, 1e-6, 0);
-  assert_close(disc.centre_z_m, sector.centre_z_m, 1e-6, 0);
-  assert_close(disc.electrode_edge_u_m, sector.electrode_edge_u_m, 1e-6, 0);
-  assert_close(disc.capacitance_F, sector.capacitance_F, 1e-6, 0);
-  assert_close(disc.energy_J, sector.energy_J, 1e-6, 0);
-}
-
 /* ---- beside the solid film ---- */
 
 /* A preview: z within 20 %. The film slips some 20 um further along each fibre (theory), which
@@ -155,31 +141,6 @@ static void check_beside_solid(const struct dea_device *device, double of_edge)
   assert_close(tip[1], tip[0], 0.2, 0);
   assert_close(edge[1], edge[0], of_edge, 0);
   assert_close(capacitance[1] - 1, capacitance[0] - 1, 2.2 * of_edge, 0);
-}
-
-TEST(test_fibres_of_all_kinds)
-{
-  only_nightly();
-  static const int fibres[] = {1, 4, 6};
-  for (size_t i = 0; i < 3; i++) {
-    struct dea_device device = test_star(fibres[i]);
-    check_beside_solid(&device, fibres[i] == 6 ? 0.1 : 0.05);
-  }
-  struct dea_device device = test_star(4);
-  device.fibre_tip_width_m = 0.5e-3;
-  check_beside_solid(&device, 0.05);
-
-  device = test_star(4);
-  device.fibre_tip_radius_m += 0.75e-3;
-  check_beside_solid(&device, 0.05);
-
-  device = test_star(4);
-  device.outer_end = DEA_END_HINGED;
-  check_beside_solid(&device, 0.05);
-
-  device.outer_end = DEA_END_FREE;
-  device.fibre_outer_gap_m = 1e-3;
-  check_beside_solid(&device, 0.05);
 }
 
 /* What lies between film and fibre. */

@@ -7,6 +7,7 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
 #include "quarter_grid.h"
+#include "solid_block.h"
 #include "study/study.h"
 
 #include <jansson.h>
@@ -21,24 +22,6 @@ static struct dea_context *ctx;
 static const char *program;
 
 static const double a_m = 3.75e-3, b_m = 15e-3;
-
-static int sheet_layer(const void *self, int region, int ply)
-{
-  return ply;
-}
-
-static bool film_inside(const void *self, int region, int ply)
-{
-  return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
-}
-
-static int quarter_held(const void *self, const double X[3])
-{
-  if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
-    return 1 | 2 | 4;
-  }
-  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
-}
 
 /* Of a coupled field: ground below, voltage on top. self: thickness of the film. */
 static bool faces(const void *self, const double X[3], double *share)
@@ -107,8 +90,8 @@ static struct answer solve(const struct test_case *k)
   const struct dea_solid_options options = {.order_z = 2,
                                             .part_material_count = 2,
                                             .part_materials = layers,
-                                            .part_material_of = sheet_layer,
-                                            .active = film_inside,
+                                            .part_material_of = layer_of_ply,
+                                            .active = quarter_active,
                                             .held = quarter_held,
                                             .field = k->field,
                                             .electrode = faces,

@@ -38,28 +38,6 @@ TEST(test_four_fibres)
   json_decref(root);
 }
 
-/* Without fibres: the exact disc. Force and energy: charge is minus its derivative, so it falls
- * with V. */
-TEST(test_plain_disc)
-{
-  static const char *const orders[] = {"{order: 2}", "{order: 3, order_z: 1}"};
-  for (int i = 0; i < 2; i++) {
-    char text[200];
-    snprintf(text, sizeof text,
-             "run @/examples/plain-disc.yaml --model 3d --json "
-             "--set 'compute.voltage={values: [0 kV, 3 kV]}' --set 'compute.solid=%s'",
-             orders[i]);
-    assert_int_equal(command_run(text), 0);
-    json_t *root = json_loads(command_out, 0, NULL);
-    const json_t *p = json_array_get(json_object_get(root, "points"), 1);
-    assert_close(number(p, "electrode_stretch") - 1, 0.03434, 6e-3, 0);
-    assert_true(isnan(number(p, "fibre_tip_z_m")));
-    assert_close(number(p, "centre_z_m"), 0, 0, 1e-9);
-    assert_true(number(p, "energy_J") < 0);
-    json_decref(root);
-  }
-}
-
 /* A result names the libraries that have computed it, of this model PETSc with what it brings:
  * once, and not where another model alone has computed; and what its solver has done. */
 TEST(test_libraries)
@@ -91,30 +69,6 @@ static const json_t *last_point(const char *arguments, json_t **root)
   *root = json_loads(command_out, 0, NULL);
   const json_t *points = json_object_get(*root, "points");
   return json_array_get(points, json_array_size(points) - 1);
-}
-
-/* Eight fibres hold the electrode more than four do, and it goes down too. The film as a membrane
- * is another element of another law of volume: the edge is the same to 5 %, and as it bends less
- * the way down to a fifth (docs/theory/membrane.md). */
-TEST(test_eight_fibres)
-{
-  json_t *roots[3];
-  const json_t *eight =
-      last_point("frdea-8.yaml --set 'compute.voltage={values: [0 kV, 3 kV]}'", &roots[0]);
-  const json_t *four =
-      last_point("frdea-4.yaml --set 'compute.voltage={values: [0 kV, 3 kV]}'", &roots[1]);
-  const json_t *membrane = last_point("frdea-8.yaml --set compute.solid.film=membrane "
-                                      "--set 'compute.voltage={values: [0 kV, 3 kV]}'",
-                                      &roots[2]);
-  double edge = number(eight, "electrode_edge_u_m"), centre = number(eight, "centre_z_m");
-  assert_close(edge, number(membrane, "electrode_edge_u_m"), 0.15, 0);
-  assert_close(centre, number(membrane, "centre_z_m"), 0.2, 0);
-  assert_true(edge > 0 && edge < number(four, "electrode_edge_u_m"));
-  assert_true(centre < 0);
-  assert_true(json_is_true(json_object_get(eight, "stable")));
-  for (int i = 0; i < 3; i++) {
-    json_decref(roots[i]);
-  }
 }
 
 /* Fibres that are turned with their mesh do the same; the axes of their nodes are their own. */
@@ -205,44 +159,6 @@ TEST(test_preview)
   assert_contains(command_out, "tension_N_per_m");
   command_read("preview/3d_profiles.csv", command_out);
   assert_contains(command_out, "tension");
-}
-
-/* Three meshes: more unknowns on each, another answer on each that lies near the others, and on the
- * finest that of a run of its own. */
-TEST(test_study_of_convergence)
-{
-  assert_int_equal(command_run("run @/examples/frdea-4.yaml --model 3d --json "
-                               "--study convergence --set 'compute.convergence="
-                               "{refinement: [1, 1.2, 1.4], voltage: [1 kV]}'"),
-                   0);
-  json_t *root = json_loads(command_out, 0, NULL);
-  const json_t *study = json_object_get(root, "convergence");
-  const json_t *meshes = json_object_get(study, "meshes");
-  assert_int_equal(json_array_size(meshes), 3);
-  double before = 0;
-  for (size_t i = 0; i < 3; i++) {
-    double unknowns = number(json_array_get(meshes, i), "unknowns");
-    assert_true(unknowns > before);
-    before = unknowns;
-  }
-  const json_t *centre = json_array_get(json_object_get(study, "quantities"), 0);
-  const json_t *values = json_object_get(centre, "values");
-  assert_string_equal(json_string_value(json_object_get(centre, "quantity")), "centre_z_m");
-  double z[3];
-  for (size_t i = 0; i < 3; i++) {
-    z[i] = json_number_value(json_array_get(values, i));
-  }
-  assert_close(z[2], z[0], 0.02, 0);
-  for (size_t i = 0; i < 3; i++) {
-    assert_true(fabs(z[i] - z[(i + 1) % 3]) > 1e-5 * fabs(z[0]));
-  }
-  assert_int_equal(json_array_size(json_object_get(study, "enough")), 1);
-  json_decref(root);
-  const json_t *finest = last_point("frdea-4.yaml --set compute.solid.refinement=1.4 "
-                                    "--set 'compute.voltage={values: [1 kV]}'",
-                                    &root);
-  assert_close(z[2], number(finest, "centre_z_m"), 1e-6, 0);
-  json_decref(root);
 }
 
 TESTS(command_set_up, command_tear_down)

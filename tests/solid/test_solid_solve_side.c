@@ -62,24 +62,6 @@ TEST(test_model_goes_to_the_side_asked_for)
   assert_close(up[1].centre_z_m, -any[1].centre_z_m, 5e-2, 0);
 }
 
-/* Without fibres the film is flat, up to a voltage between 400 and 500 V; just beyond it the energy
- * of the buckled film is lower by a part in 10^7 only. */
-TEST(test_onset_without_fibres)
-{
-  struct dea_device flat = slack(4, DEA_END_CLAMPED);
-  struct dea_load_point below, above;
-  struct dea_model *model;
-  flat.fibre_count = 0;
-  assert_int_equal(dea_solid_module.create(ctx, &flat, NULL, &model), DEA_OK);
-  assert_int_equal(dea_solid_module.solve(ctx, model, 400, &below), DEA_OK);
-  assert_int_equal(below.unstable_modes, 0);
-  assert_close(below.centre_z_m, 0, 0, 1e-9);
-  assert_int_equal(dea_solid_module.solve(ctx, model, 500, &above), DEA_OK);
-  assert_int_equal(above.unstable_modes, 0);
-  assert_true(fabs(above.centre_z_m) > 1e-5);
-  dea_solid_module.destroy(ctx, model);
-}
-
 /* Free fibres rise as a whole with the film, in a sweep and at once. The centre, as another
  * program has found it; at 0.7 kV, 0.15 kV above the onset, it has 125 um, where ours converges to
  * 139 um with the mesh (docs/verification/branches.md). */

@@ -4,6 +4,7 @@
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "quarter_grid.h"
+#include "solid_block.h"
 #include "testing.h"
 #include "yeoh_part.h"
 
@@ -13,11 +14,6 @@
 
 static const double a_m = 3.75e-3, b_m = 15e-3, h_m = 44e-6;
 static const double epsilon = 2.8 * DEA_EPSILON_0;
-
-static int sheet_layer(const void *self, int region, int ply)
-{
-  return ply;
-}
 
 /* Local axes on x = 0, where y comes first. */
 static bool swapped(const void *self, const double X[3], double Q[9])
@@ -75,7 +71,7 @@ static void check_capacity(int order)
                                             .field = DEA_SOLID_FIELD_COUPLED,
                                             .part_material_count = 2,
                                             .part_materials = layers,
-                                            .part_material_of = sheet_layer,
+                                            .part_material_of = layer_of_ply,
                                             .held = held,
                                             .frame = swapped,
                                             .electrode = faces};

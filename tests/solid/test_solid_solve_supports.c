@@ -5,19 +5,12 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "solid_fixture.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const double mu = 1e5;
 static const double length = 2;
 static const struct block bar = {{2, 1, 1}, {3, 1, 1}, 2, 2};
 static struct dea_part_material soft; // of modulus mu, Poisson's ratio 0
-
-/* Slides on the three planes through the origin. */
-static int on_planes(const void *self, const double X[3])
-{
-  return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
-}
 
 /* Along the bar only, so that it cannot buckle. */
 static int along(const void *self, const double X[3])
@@ -121,37 +114,6 @@ TEST(test_prescribed_in_local_axes)
   dea_grid_destroy(ctx, grid);
 }
 
-/* What was prescribed is released: the bar goes back. A dead load in its place holds as much. */
-TEST(test_release_and_dead_load)
-{
-  struct dea_grid *grid = block_grid(ctx, &bar);
-  struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
-  struct dea_solid_report report;
-  pull_end(solid, grid, 1);
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  double *pulled = calloc(3 * grid->node_count, sizeof *pulled);
-  assert_non_null(pulled);
-  memcpy(pulled, dea_solid_displacement(solid), 3 * grid->node_count * sizeof *pulled);
-  for (size_t n = 0; n < grid->node_count; n++) {
-    if (at_end(grid, n)) {
-      dea_solid_force(solid)[3 * n] = dea_solid_reaction(solid)[3 * n];
-      assert_int_equal(dea_solid_release(ctx, solid, n, 1), DEA_OK);
-    }
-  }
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  for (size_t i = 0; i < 3 * grid->node_count; i++) {
-    assert_close(dea_solid_displacement(solid)[i], pulled[i], 0, 1e-7);
-  }
-  memset(dea_solid_force(solid), 0, 3 * grid->node_count * sizeof(double));
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  for (size_t i = 0; i < 3 * grid->node_count; i++) {
-    assert_close(dea_solid_displacement(solid)[i], 0, 0, 1e-7);
-  }
-  free(pulled);
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
-}
-
 /* Through itself: no equilibrium there, and the solid stays at the last one on the way, where
  * reaction and displacement belong together. */
 TEST(test_way_that_ends)
@@ -172,18 +134,6 @@ TEST(test_way_that_ends)
   pull_end(solid, grid, way);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   assert_close(reaction(solid, grid), stress(1 + way / length), 1e-7, 0);
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
-}
-
-TEST(test_arguments)
-{
-  static const double none[3] = {0, 0, 0};
-  struct dea_grid *grid = block_grid(ctx, &bar);
-  struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
-  assert_int_equal(dea_solid_prescribe(ctx, solid, grid->node_count, 1, none), DEA_E_ARGUMENT);
-  assert_int_equal(dea_solid_prescribe(ctx, solid, 0, 8, none), DEA_E_ARGUMENT);
-  assert_int_equal(dea_solid_release(ctx, solid, grid->node_count, 1), DEA_E_ARGUMENT);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }

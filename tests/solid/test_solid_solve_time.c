@@ -1,4 +1,4 @@
-/* Steps in time of solids: creep, order, energy, vibration. Creep to pull-in: verify_time. */
+/* Steps in time of solids: rest, vibration, order. Creep to pull-in: verify_time. */
 // ctest: solid
 #include "material/material.h"
 #include "model/solid/equilibrium/load_steps.h"
@@ -24,18 +24,7 @@ struct film {
   size_t corner; // node that is farthest out
 };
 
-/* One element of 1 mm, free but for its planes of symmetry. */
-static int on_planes(const void *self, const double X[3])
-{
-  return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0) | (X[2] < 1e-12 ? 4 : 0);
-}
-
 #define SQUARE .block = {{1e-3, 1e-3, 100e-6}, {1, 1, 1}, 2, 2}, .held = on_planes
-
-static bool everywhere(const void *self, int region, int ply)
-{
-  return true;
-}
 
 /* Dead loads on the sides of one element that hold the stretch: shares of a parabola's nodes. */
 static void hang_weights(struct film *film)
@@ -123,24 +112,6 @@ static void jump_to(struct film *film, double voltage_V)
   dea_solid_time_accept(film->time);
 }
 
-/* Benchmark 6a: a small step of the voltage at t = 0. */
-TEST(test_creep_after_a_small_step)
-{
-  struct film film = {SQUARE, .pre_stretch = 1, .radius = 1, .branches = {1, {{2e5, 0.5}}}};
-  const double field = 0.02 * sqrt(mu[0] / eps), steps = 40, end = 6;
-  double slow = 0.02 * 0.02 / 6; // equibiaxial: eps E^2 = 6 mu strain
-  const double H = film.block.size[2];
-  film_create(&film);
-  jump_to(&film, field * H);
-  assert_close(strain_of(&film), slow / 3, 1e-3, 0);
-  for (int i = 1; i <= steps; i++) {
-    double t = end * i / steps;
-    assert_int_equal(step_to(&film, field * H, end / steps), DEA_OK);
-    assert_close(strain_of(&film), slow * (1 - 2. / 3 * exp(-t / (3 * 0.5))), 1e-3, 0);
-  }
-  film_destroy(&film);
-}
-
 /* A film at rest, and one that is held in an actuated state for long, stay where they are, for
  * branches that are soft or much stiffer than the law, in steps short or long. */
 TEST(test_held_film_stays)
@@ -167,35 +138,6 @@ TEST(test_held_film_stays)
     }
     assert_true(fabs(dea_solid_time_energies(film.time, false).dissipated) < 1e-18);
     film_destroy(&film);
-  }
-}
-
-/* A clamped film at rest has no unstable mode however stiff its branches are beside the law. */
-static int all_round(const void *self, const double X[3])
-{
-  const double *size = ((const struct film *)self)->block.size;
-  bool inside = X[0] > 1e-9 && X[0] < size[0] - 1e-9 && X[1] > 1e-9 && X[1] < size[1] - 1e-9;
-  return inside ? 0 : 7;
-}
-
-TEST(test_no_false_modes)
-{
-  static const double stretch[] = {1, 1.25, 1.5, 2}, ratio[] = {0.5, 20, 1000};
-  for (int k = 0; k < 4; k++) {
-    for (int i = 0; i < 3; i++) {
-      struct film film = {.block = {{1e-3, 1e-3, 50e-6}, {4, 4, 1}, 2, 2},
-                          .held = all_round,
-                          .pre_stretch = stretch[k],
-                          .radius = 1,
-                          .branches = {1, {{ratio[i] * mu[0], 1}}}};
-      struct dea_solid_report report;
-      film_create(&film);
-      for (double step = 1e-4; step < 20; step *= 20) {
-        assert_int_equal(dea_solid_time_step(ctx, film.time, 0, step, &report), DEA_OK);
-        assert_int_equal(report.unstable_modes, 0);
-      }
-      film_destroy(&film);
-    }
   }
 }
 

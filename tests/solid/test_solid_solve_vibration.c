@@ -49,21 +49,6 @@ static struct dea_part_material film_layer(const struct dea_material *material, 
   return layer;
 }
 
-/* Ascending frequencies of a tense rectangle, c/2 sqrt(m^2/a^2 + n^2/b^2). */
-static void rectangle(double c, double *frequency)
-{
-  for (int k = 0; k < MODES; k++) {
-    double best = INFINITY;
-    for (int m = 1; m <= MODES; m++) {
-      for (int n = 1; n <= MODES; n++) {
-        double f = 0.5 * c * hypot(m / frame_x, n / frame_y);
-        best = f < best && (k == 0 || f > frequency[k - 1] * (1 + 1e-9)) ? f : best;
-      }
-    }
-    frequency[k] = best;
-  }
-}
-
 /* Share of the motion, in mass, that is out of the plane. */
 static double out_of_plane(const struct dea_solid *solid, size_t nodes, const double *vector)
 {
@@ -100,31 +85,6 @@ static void modes_out_of_plane(struct dea_solid *solid, const struct dea_grid *g
   free(vector);
 }
 
-static void check_rectangle(const struct dea_material *material, double l, bool membrane)
-{
-  const struct block film = {{frame_x, frame_y, membrane ? 0 : h}, {8, 5, 1}, 3, membrane ? 1 : 2};
-  const struct dea_part_material layer = film_layer(material, l);
-  struct dea_grid *grid = block_grid(ctx, &film);
-  struct dea_solid *solid = block_solid(ctx, grid, film.order_z, &layer, all_around);
-  double square[MODES], exact[MODES], tolerance = membrane ? 1e-4 : 6e-4;
-  modes_out_of_plane(solid, grid, square);
-  rectangle(sqrt(pre_stress(material, l) / rho), exact);
-  for (int k = 0; k < MODES; k++) {
-    assert_close(sqrt(square[k]) / (2 * pi), exact[k], tolerance, 0);
-  }
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
-}
-
-TEST(test_tense_rectangle)
-{
-  const struct dea_material gent = test_material("gent", 43e3, 115, 0);
-  for (int membrane = 0; membrane < 2; membrane++) {
-    check_rectangle(&gent, 2, membrane);
-    check_rectangle(&gent, 4, membrane);
-  }
-}
-
 /* ---- what frequencies must not depend on, and what they must show ---- */
 
 static void lowest(const struct dea_part_material *layer, const struct block *block, size_t count,
@@ -152,11 +112,6 @@ TEST(test_no_trace_of_kappa)
   for (int k = 0; k < ALL; k++) {
     assert_close(soft[k], stiff[k], 1e-3, 0);
   }
-}
-
-static bool everywhere(const void *self, int region, int ply)
-{
-  return true;
 }
 
 static dea_status take_nothing(struct dea_context *own, void *user, size_t i, const double *real,
@@ -227,25 +182,6 @@ TEST(test_modes_that_come_twice)
   for (int k = 0; k < MODES; k++) {
     assert_close(square[k], first * sums[k], 1e-3, 0);
   }
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
-}
-
-TEST(test_what_is_refused)
-{
-  const struct dea_material gent = test_material("gent", 43e3, 115, 0);
-  struct dea_part_material layer = film_layer(&gent, 2);
-  const struct block film = {{frame_x, frame_y, 0}, {2, 2, 1}, 2, 1};
-  struct dea_grid *grid = block_grid(ctx, &film);
-  double square[1];
-  layer.density_kg_per_m3 = 0;
-  struct dea_solid *solid = block_solid(ctx, grid, 1, &layer, all_around);
-  struct dea_solid_report report;
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 1, square, NULL),
-                   DEA_E_ARGUMENT);
-  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 0, square, NULL),
-                   DEA_E_ARGUMENT);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }

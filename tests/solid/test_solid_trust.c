@@ -139,29 +139,6 @@ TEST(test_film_on_a_sheet)
   json_decref(root);
 }
 
-/* What is missing there is of the free edges, where the film bears nothing within its thickness: a
- * strip of four times the width, so little bent that it may bend to both sides, has all of it. */
-TEST(test_wide_film_on_a_sheet)
-{
-  json_t *root = run("@/tests/cases/trust/unimorph-pet.yaml",
-                     "--set 'shapes.strip.x=40 mm' --set 'shapes.strip.width=80 mm' "
-                     "--set 'shapes.strip.height=24 mm' --set 'shapes.root.height=28 mm' "
-                     "--set 'monitors.a.at=[58 mm, 0 mm]' --set 'monitors.b.at=[61 mm, 0 mm]' "
-                     "--set 'monitors.c.at=[64 mm, 0 mm]' --set 'compute.voltage={values: [0.1 "
-                     "kV]}' --set compute.solid.refinement=2");
-  assert_close(curvature_share(point(root, 0), 100), 1, 0, 1e-3);
-  json_decref(root);
-}
-
-/* The same film on one of its own. */
-TEST(test_bender)
-{
-  json_t *root = run("@/examples/devices/bender.yaml", "--set 'compute.voltage={values: [1 kV]}'");
-  assert_true(json_is_true(json_object_get(point(root, 0), "trusted")));
-  assert_true(number(point(root, 0), "compression_ratio") < 0.2);
-  json_decref(root);
-}
-
 /* Fibres do not bear what the film before their tips has of compression. */
 TEST(test_fibres)
 {

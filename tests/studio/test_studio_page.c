@@ -64,13 +64,6 @@ static void press(const char *key, int modifiers)
   }
 }
 
-static void resize(int width, int height)
-{
-  browser_do(&browser, "Emulation.setDeviceMetricsOverride",
-             json_pack("{s:i, s:i, s:i, s:b}", "width", width, "height", height,
-                       "deviceScaleFactor", 1, "mobile", 0));
-}
-
 // The tests stand in the order of the work
 // ---------------------------------------------------------
 
@@ -100,15 +93,6 @@ TEST(test_a_value_changes_text_and_drawing)
         "document.querySelector('[data-key=\"shapes[1].radius\"]').value === '8.1 mm'");
   until("fetch('design?name=cone-loading.yaml').then((a) => a.json()).then((j) => "
         "j.text.includes('radius: 8.1 mm'))");
-  assert_quiet();
-}
-
-TEST(test_a_mesh)
-{
-  act("document.querySelector('#mesh').open = true");
-  until("document.querySelector('#mesh path') !== null && "
-        "document.querySelector('#mesh path').getAttribute('d').length > 1000");
-  act("document.querySelector('#mesh').open = false");
   assert_quiet();
 }
 
@@ -210,56 +194,12 @@ TEST(test_sliders)
   assert_quiet();
 }
 
-/* Those of the reduced model, whose file the design names from its own folder. */
-TEST(test_sliders_of_the_reduced_model)
-{
-  command_write(
-      "room/disc.yaml",
-      "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\npre_stretch: 1.5\n"
-      "frame: {inner_radius: 15 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
-      "compute: {models: [reduced], reduced: {file: disc.json}, voltage: {to: 2 kV, step: "
-      "1 kV}}\n");
-  assert_int_equal(command_run("reduce-order room/disc.yaml -o room/disc.json -q"), 0);
-  act("fetch('job', { method: 'POST', body: JSON.stringify({ action: 'run', file: 'disc.yaml', "
-      "output: 'disc.run' }) }).then(() => 1)");
-  until("[...document.querySelectorAll('#jobs .head')].some((one) => "
-        "one.textContent.includes('disc.run') && one.textContent.includes(': done'))");
-  until("fetch('sliders?run=disc.run').then((a) => a.text()).then((text) => "
-        "text.includes('\"dea_reduced'))");
-  assert_quiet();
-}
-
 TEST(test_a_report_opens)
 {
   act("document.querySelector('#film').open = true");
   until("document.querySelector('#film iframe').src.includes('film?run=cone-loading.run')");
   act("document.querySelector('#report').click()");
   until("document.querySelector('#files iframe') !== null");
-  assert_quiet();
-}
-
-TEST(test_both_widths_and_schemes)
-{
-  static const int widths[] = {390, 1600};
-  static const char *const schemes[] = {"dark", "light"};
-  for (size_t i = 0; i < 2; i++) {
-    browser_do(&browser, "Emulation.setEmulatedMedia",
-               json_pack("{s:[{s:s, s:s}]}", "features", "name", "prefers-color-scheme", "value",
-                         schemes[i]));
-    for (size_t k = 0; k < 2; k++) {
-      char fits[80];
-      resize(widths[k], 900);
-      snprintf(fits, sizeof fits, "document.documentElement.scrollWidth <= %d", widths[k]);
-      until(fits);
-    }
-    until(i == 0 ? "getComputedStyle(document.body).backgroundColor === 'rgb(15, 19, 25)'"
-                 : "getComputedStyle(document.body).backgroundColor === 'rgb(245, 246, 248)'");
-  }
-  // what is used has a name for who does not see it
-  until("[...document.querySelectorAll('button, select, input, textarea')].every((e) => "
-        "!e.checkVisibility() || "
-        "e.textContent.trim() !== '' || e.labels?.length > 0 || e.getAttribute('aria-label') || "
-        "e.closest('.CodeMirror'))");
   assert_quiet();
 }
 

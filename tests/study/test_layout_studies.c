@@ -122,31 +122,6 @@ TEST(test_compare_design)
   run_end(&run);
 }
 
-/* Bands of monitors by central differences over runs of their own. */
-TEST(test_uncertainty)
-{
-  static const char *const names[] = {"sweep", "uncertainty"};
-  static const struct {
-    const char *key, *low, *high;
-  } sides[] = {{"plies.film.thickness", "98 um", "102 um"},
-               {"bodies.hub.force_z", "99 mN", "101 mN"}};
-  const struct dea_override of = {"compute.uncertainty.parameters",
-                                  "[{name: plies.film.thickness, std: 2 um}, "
-                                  "{name: bodies.hub.force_z, std: 1 mN}]"};
-  struct run run = run_studies(&of, 1, names, 2);
-  const struct dea_curve *curve = dea_result_find(run.result, "3d", "sweep");
-  double variance = 0;
-  for (size_t j = 0; j < 2; j++) {
-    const struct dea_override low = {sides[j].key, sides[j].low};
-    const struct dea_override high = {sides[j].key, sides[j].high};
-    variance += pow((by_hand(&high, 1, "hub_z_m") - by_hand(&low, 1, "hub_z_m")) / 2, 2);
-  }
-  assert_non_null(curve->std);
-  assert_close(get(&curve->std[1], "hub_z_m"), sqrt(variance), 1e-6, 0);
-  assert_true(isnan(get(&curve->std[1], "drive_voltage_V"))); // a place, no answer
-  run_end(&run);
-}
-
 /* Uncertainties of the law of two plies of one material: they deviate alike. */
 TEST(test_uncertain_laws)
 {
@@ -234,30 +209,6 @@ TEST(test_operating_map)
   run_end(&run);
 }
 
-TEST(test_operating_map_of_what_is_not_there)
-{
-  static const struct {
-    const char *section, *message;
-  } all[] = {
-      {"{parameters: [{name: plies.film.thicknes}]}", "did you mean 'plies.film.thickness'?"},
-      {"{parameters: [{name: plies.film.thickness, from: 2 kV}]}", "'2 kV' is a voltage"},
-      {"{quantity: hub_zz_m}", "did you mean 'hub_z_m'?"},
-  };
-  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-    static const char *const names[] = {"operating-map"};
-    const struct dea_override of = {"compute.operating_map", all[i].section};
-    const struct dea_model_type *type = dea_model_find("3d");
-    struct run run = run_begin(cone, &of, 1);
-    assert_int_equal(dea_study_check_models(ctx, &type, 1, names, 1, run.result), DEA_E_DESIGN);
-    if (find_error(ctx, all[i].message) == NULL) {
-      print_findings(ctx);
-      fail();
-    }
-    dea_finding_clear(ctx);
-    run_end(&run);
-  }
-}
-
 static const char flat[] = "dea: 1\n"
                            "title: a film that is held at its edge\n"
                            "shapes:\n"
@@ -298,24 +249,6 @@ static struct dea_load_point at_one(const struct dea_override *overrides, size_t
   dea_device_destroy(ctx, run.device);
   dea_design_destroy(ctx, run.design);
   return point;
-}
-
-/* Two plates that end inside a film are longer by h ln 4/(2 pi) (docs/verification/coupled.md); the
- * mesh makes that somewhat more. */
-TEST(test_fringe)
-{
-  static const struct dea_override of[] = {{"compute.solid.field", "coupled"},
-                                           {"compute.solid.elements_z", "4"},
-                                           {"compute.voltage", "{values: [10 V]}"}};
-  const double pi = acos(-1), a = 4e-3, h = 500e-6, permittivity = 2.8 * 8.8541878128e-12;
-  double z_m, charge_C;
-  const struct dea_load_point point = at_one(of, 3, &z_m, &charge_C);
-  const double C = point.capacitance_F / 0.25; // at half the voltage
-  const double longer_m = sqrt(C * h / (pi * permittivity)) - a;
-  assert_true(longer_m > h * log(4) / (2 * pi) && longer_m < 1.1 * h * log(4) / (2 * pi));
-  assert_close(charge_C, C * 0.5 * 10, 1e-6, 0);
-  const struct dea_load_point thin = at_one(&of[2], 1, &z_m, &charge_C);
-  assert_close(thin.capacitance_F / 0.25, pi * a * a * permittivity / h, 1e-3, 0);
 }
 
 /* The side that is asked for; the other one is its mirror image. */

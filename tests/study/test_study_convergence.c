@@ -41,26 +41,6 @@ TEST(test_known_order)
   }
 }
 
-/* An order of 4 is not believed, nor one of 0.1: errors larger and smaller than true ones. */
-TEST(test_order_is_limited)
-{
-  static const double n[] = {1, 2, 3};
-  double f[3], order, limit, errors[3];
-  for (int m = 0; m < 3; m++) {
-    f[m] = value(n[m], 4);
-  }
-  assert_int_equal(dea_richardson(n, f, 3, &order, &limit, errors), DEA_ORDER_OBSERVED);
-  assert_close(order, 4, 1e-6, 0);
-  assert_close(limit, f[2] - (f[1] - f[2]) / 3, 1e-12, 0); // of order 2
-  assert_true(errors[2] > 2 * (f[2] - 3) / 3);
-  for (int m = 0; m < 3; m++) {
-    f[m] = value(n[m], 0.1);
-  }
-  assert_int_equal(dea_richardson(n, f, 3, &order, &limit, errors), DEA_ORDER_OBSERVED);
-  assert_close(order, 0.1, 1e-6, 0);
-  assert_close(limit, f[2] - (f[1] - f[2]) / (sqrt(2) - 1), 1e-12, 0); // of order 1/2
-}
-
 TEST(test_no_order)
 {
   static const double n[] = {1, 2, 3, 4};

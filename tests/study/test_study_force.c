@@ -149,15 +149,6 @@ TEST(test_nothing_touched)
   tear_down_result();
 }
 
-/* Without the section nothing is computed. */
-TEST(test_nothing_asked)
-{
-  set_up_result(GOOD_DESIGN, NULL, 0);
-  assert_int_equal(dea_study_run(ctx, &spring, NULL, 0, result), DEA_OK);
-  assert_null(dea_result_find(result, "spring", "force"));
-  tear_down_result();
-}
-
 /* A tip goes on from the depth before where the next one is deeper; the numbers are those of a
  * model of each depth's own. */
 TEST(test_deeper)

@@ -229,20 +229,4 @@ TEST(test_bad_keys)
   }
 }
 
-/* A body that is not there, and pressures. */
-TEST(test_bad_device)
-{
-  struct dea_device *device = spring_device();
-  const struct dea_override set = {"compute.loading", "{body: hup, from: 0 mm, to: 1 mm}"};
-  struct dea_design *design;
-  assert_int_equal(
-      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), &set, 1, &design),
-      DEA_OK);
-  const struct dea_settings *given = dea_design_settings(design, dea_study_loading.keys);
-  assert_int_equal(dea_study_loading.keys->fit(ctx, given, device), DEA_OK);
-  assert_non_null(find_error(ctx, "no body 'hup'; did you mean 'hub'?"));
-  dea_design_destroy(ctx, design);
-  dea_device_destroy(ctx, device);
-}
-
 TESTS(context_set_up, context_tear_down)

@@ -80,30 +80,6 @@ TEST(test_limits_are_those_of_the_paths)
   }
 }
 
-/* Without stiff electrodes the film knows the field only: voltages go as its thickness. */
-TEST(test_limits_grow_with_the_thickness)
-{
-  struct run r = run("lumped", map_only, 1, NULL, 0);
-  const struct dea_result_table *table =
-      dea_result_find_table(r.result, "lumped", "operating-map", "film_thickness");
-  double field = NAN;
-  size_t compared = 0;
-  for (size_t row = 0; row < table->row_count; row++) {
-    double H = dea_result_table_number(table, row, "film_thickness_m", 0);
-    double V = dea_result_table_number(table, row, "breakdown_V", 0);
-    if (!isnan(V)) {
-      field = isnan(field) ? V / H : field;
-      assert_close(V / H, field, 1e-6, 0);
-      compared++;
-    }
-    assert_true(dea_result_table_number(table, row, "level_V", 1) >
-                    dea_result_table_number(table, row, "level_V", 0) ||
-                isnan(dea_result_table_number(table, row, "level_V", 1)));
-  }
-  assert_true(compared > 10);
-  run_end(&r);
-}
-
 TEST(test_figures)
 {
   struct run r = run("lumped", map_only, 1, NULL, 0);
@@ -174,26 +150,6 @@ TEST(test_by_name_only)
   r = run("axisymmetric", line_only, 1, NULL, 0);
   assert_int_equal(r.result->table_count, 0);
   assert_non_null(find_finding(ctx, DEA_NOTE, "model axisymmetric does not support a load line"));
-  run_end(&r);
-}
-
-/* What the varied designs are told stays with them. */
-TEST(test_varied_designs_leave_no_findings)
-{
-  dea_finding_clear(ctx);
-  size_t before = 0, after = 0;
-  static const struct dea_override tight = {"electrodes", "{diameter: 17 mm unstretched}"};
-  struct run r = run("axisymmetric", path_only, 1, &tight, 1);
-  dea_finding_get(ctx, &before);
-  run_end(&r);
-  r = run("axisymmetric", map_only, 1, &tight, 1); // at a pre-stretch of 1.8 they leave the frame
-  dea_finding_get(ctx, &after);
-  assert_int_equal(after, before);
-  assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
-  const struct dea_result_table *table =
-      dea_result_find_table(r.result, "axisymmetric", "operating-map", "pre_stretch");
-  assert_true(dea_result_table_number(table, 0, "breakdown_V", 0) > 0);
-  assert_true(isnan(dea_result_table_number(table, 32, "breakdown_V", 0)));
   run_end(&r);
 }
 

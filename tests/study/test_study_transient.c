@@ -136,64 +136,6 @@ TEST(test_stairs)
   end(ctx, &run);
 }
 
-struct told {
-  size_t times, done;
-};
-
-static void listen(void *user, const char *what, size_t done, size_t total)
-{
-  struct told *told = user;
-  assert_true(total == 100 && done > told->done && done <= total);
-  told->times++;
-  told->done = done;
-}
-
-/* A waveform without corners is told of on its way too. */
-TEST(test_progress)
-{
-  struct told told = {0};
-  dea_context_set_progress(ctx, listen, &told);
-  struct run run = run_text(
-      ctx, DESIGN "drive: {waveform: {kind: sine, amplitude: 1 kV, frequency: 1 Hz, cycles: 1}}\n");
-  dea_context_set_progress(ctx, NULL, NULL);
-  assert_int_equal(run.status, DEA_OK);
-  assert_true(told.times > 10 && told.done == 100);
-  end(ctx, &run);
-}
-
-/* Corners that are one but for rounding, here one of the waveform and the end, take no step. */
-TEST(test_close_corners)
-{
-  struct run run = run_text(
-      ctx, DESIGN "drive: {waveform: {kind: square, high: 1 kV, frequency: 10 Hz, cycles: 2}}\n"
-                  "compute: {transient: {until: 0.15000000000000005 s}}\n");
-  assert_int_equal(run.status, DEA_OK);
-  const struct dea_load_point *p = run.curve->points;
-  for (size_t i = 1; i < run.curve->count; i++) {
-    double step = p[i].time_s - p[i - 1].time_s;
-    assert_true(step == 0 || step > 1e-12);
-  }
-  end(ctx, &run);
-}
-
-/* A looser and a tighter tolerance agree as they promise. */
-TEST(test_tolerance)
-{
-  static const char *const more[2] = {"compute: {transient: {tolerance: 0.001}}\n",
-                                      "compute: {transient: {tolerance: 0.0000001}}\n"};
-  double edge_m[2];
-  for (int k = 0; k < 2; k++) {
-    char text[4000];
-    snprintf(text, sizeof text, "%s%s", DESIGN PULSES, more[k]);
-    struct run run = run_text(ctx, text);
-    assert_int_equal(run.status, DEA_OK);
-    edge_m[k] = run.curve->points[run.curve->count - 1].electrode_edge_u_m;
-    end(ctx, &run);
-  }
-  assert_true(edge_m[0] != edge_m[1]);
-  assert_close(edge_m[0], edge_m[1], 1e-2, 0);
-}
-
 TEST(test_interval_end_and_supply)
 {
   struct run run = run_text(

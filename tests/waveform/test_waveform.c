@@ -157,23 +157,6 @@ TEST(test_extent)
   }
 }
 
-/* The phase of a chirp turns with the frequency that it should have at each time. */
-TEST(test_chirp_frequency)
-{
-  struct dea_waveform *w =
-      make("kind: chirp\namplitude: 1 kV\nfrom: 1 Hz\nto: 100 Hz\nduration: 10 s\n");
-  size_t turns = 0;
-  double last = 0, step = 1e-5;
-  for (size_t i = 1; i <= 500000; i++) { // up to 5 s, where it has 10 Hz
-    double value = dea_waveform_value(w, step * (double)i);
-    turns += last < 0 && value >= 0;
-    last = value;
-  }
-  double cycles = 10 / log(100) * (sqrt(100) - 1); // integral of f from 0 to 5 s
-  assert_close((double)turns, cycles, 0, 1);
-  dea_waveform_destroy(w);
-}
-
 static void write_text(const char *name, const char *text)
 {
   FILE *file = fopen(in_folder(name), "w");
