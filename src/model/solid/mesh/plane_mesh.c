@@ -1,7 +1,10 @@
 #include "model/solid/mesh/plane_mesh.h"
 
-#include "base/context.h"
+#include "base/quadrature.h"
+#include "model/solid/mesh/grid.h"
+#include "model/solid/mesh/places.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -128,4 +131,123 @@ void dea_plane_mesh_middle(const struct dea_plane_mesh *mesh, size_t e, double o
     out[0] += x[0] / (double)per_quad;
     out[1] += x[1] / (double)per_quad;
   }
+}
+
+// Mapped blocks -----------------------------------------------------------------------------------
+
+static void add_block(const struct dea_block *block, struct dea_places *places,
+                      struct dea_plane_mesh *m)
+{
+  double at[DEA_HEX_ORDER_MAX + 1];
+  int n = m->order + 1;
+  dea_lobatto_nodes((size_t)m->order, at);
+  for (size_t t = 0; t < block->count_t; t++) {
+    for (size_t s = 0; s < block->count_s; s++) {
+      int *quad = m->quads + m->quad_count * (size_t)(n * n);
+      for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) {
+          double x[2], fs = 0.5 * (1 + at[i]), ft = 0.5 * (1 + at[j]);
+          block->map(block->self, block->cuts_s[s] + fs * (block->cuts_s[s + 1] - block->cuts_s[s]),
+                     block->cuts_t[t] + ft * (block->cuts_t[t + 1] - block->cuts_t[t]), x);
+          quad[n * j + i] = dea_places_node(places, x);
+        }
+      }
+      m->region[m->quad_count++] = block->region;
+    }
+  }
+}
+
+dea_status dea_blocks_mesh(struct dea_context *ctx, int order, const struct dea_block *blocks,
+                           size_t block_count, double length_m, struct dea_plane_mesh **out)
+{
+  struct dea_places places;
+  size_t quads = 0, per_quad = (size_t)((order + 1) * (order + 1));
+  *out = NULL;
+  for (size_t i = 0; i < block_count; i++) {
+    quads += blocks[i].count_s * blocks[i].count_t;
+  }
+  struct dea_plane_mesh *mesh = dea_plane_mesh_create(ctx, order, quads * per_quad, quads);
+  if (mesh == NULL ||
+      dea_places_create(ctx, mesh->x, quads * per_quad, 1e-9 * length_m, &places) != DEA_OK) {
+    dea_plane_mesh_destroy(ctx, mesh);
+    return DEA_E_MEMORY;
+  }
+  mesh->quad_count = 0;
+  for (size_t i = 0; i < block_count; i++) {
+    add_block(&blocks[i], &places, mesh);
+  }
+  mesh->node_count = places.count;
+  dea_places_release(ctx, &places);
+  *out = mesh;
+  return DEA_OK;
+}
+
+// Quality -----------------------------------------------------------------------------------------
+
+/* Slopes of the one-dimensional basis at its own nodes: [at][node]. */
+struct slopes {
+  double at[DEA_HEX_ORDER_MAX + 1][DEA_HEX_ORDER_MAX + 1];
+};
+
+static void slopes_at_nodes(int order, struct slopes *slope)
+{
+  double nodes[DEA_HEX_ORDER_MAX + 1], value[DEA_HEX_ORDER_MAX + 1];
+  dea_lobatto_nodes((size_t)order, nodes);
+  for (int i = 0; i <= order; i++) {
+    dea_lagrange((size_t)order + 1, nodes, nodes[i], value, slope->at[i]);
+  }
+}
+
+/* Smallest Jacobian of a quadrilateral over the mean one. The nodes' places are `stride` apart. */
+static double quality_of(int order, const struct slopes *slope, const int *nodes, const double *X,
+                         int stride)
+{
+  int per = order + 1;
+  double least = INFINITY, sum = 0;
+  for (int at = 0; at < per * per; at++) {
+    int i = at % per, j = at / per;
+    double map[2][2] = {{0, 0}, {0, 0}}; // by the local axes
+    for (int k = 0; k < per; k++) {
+      const double *along = X + stride * nodes[per * j + k];
+      const double *up = X + stride * nodes[per * k + i];
+      for (int c = 0; c < 2; c++) {
+        map[0][c] += slope->at[i][k] * along[c];
+        map[1][c] += slope->at[j][k] * up[c];
+      }
+    }
+    double area = map[0][0] * map[1][1] - map[0][1] * map[1][0];
+    least = fmin(least, area);
+    sum += area;
+  }
+  return least / fabs(sum / (per * per));
+}
+
+double dea_grid_smallest_jacobian(const struct dea_grid *grid)
+{
+  struct slopes slope;
+  double smallest = INFINITY;
+  slopes_at_nodes(grid->order, &slope);
+  for (size_t e = 0; e < grid->element_count; e++) { // the lower face comes first
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    smallest = fmin(smallest, quality_of(grid->order, &slope, nodes, grid->X, 3));
+  }
+  return smallest;
+}
+
+double dea_plane_mesh_smallest_jacobian(const struct dea_plane_mesh *mesh, size_t *worst)
+{
+  struct slopes slope;
+  double smallest = INFINITY;
+  size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
+  slopes_at_nodes(mesh->order, &slope);
+  for (size_t e = 0; e < mesh->quad_count; e++) {
+    double quality = quality_of(mesh->order, &slope, mesh->quads + e * per_quad, mesh->x, 2);
+    if (!(quality >= smallest)) {
+      smallest = quality;
+      if (worst != NULL) {
+        *worst = e;
+      }
+    }
+  }
+  return smallest;
 }
