@@ -17,11 +17,13 @@ static inline void write_bytes(const char *name, const void *bytes, size_t lengt
 }
 
 static struct dea_table *table, *joined; // that was read last, and joined to it
+static struct dea_recording *recording;  // that was made last
 
 static inline int import_tear_down(void **state)
 {
   dea_table_destroy(ctx, table);
   dea_table_destroy(ctx, joined);
+  dea_recording_destroy(ctx, recording);
   return tear_down(state);
 }
 
@@ -72,19 +74,24 @@ static inline struct dea_mapping *map_text(const char *text)
   return mapping;
 }
 
-/* The recording of a text file; map: of a mapping, NULL guesses. */
-static inline struct dea_recording *record_file(const char *name, const char *text, const char *map)
+/* Records the table; mapping: NULL guesses. */
+static inline dea_status record_table(const struct dea_mapping *mapping)
+{
+  dea_recording_destroy(ctx, recording);
+  return dea_table_record(ctx, table, mapping, &recording);
+}
+
+/* Records a text file; map: of a mapping, NULL guesses. */
+static inline void record_file(const char *name, const char *text, const char *map)
 {
   read_text(name, text);
   struct dea_mapping *mapping = map != NULL ? map_text(map) : NULL;
-  struct dea_recording *recording;
-  if (dea_table_record(ctx, table, mapping, &recording) != DEA_OK) {
+  if (record_table(mapping) != DEA_OK) {
     size_t count;
     const struct dea_finding *findings = dea_finding_get(ctx, &count);
     fail_msg("%s; %s", dea_context_message(ctx), count > 0 ? findings[count - 1].text : "");
   }
   dea_mapping_destroy(ctx, mapping);
-  return recording;
 }
 
 static inline const struct dea_table_column *column_of(const char *name)

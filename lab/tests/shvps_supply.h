@@ -52,14 +52,13 @@ static inline void shvps_protocol_of(const char *device, const char *waveform, c
 }
 
 /* A triangle, 4 s a cycle. */
-static inline void shvps_protocol(const struct supply *s, double highest_kV, int cycles,
-                                  const char *more)
+static inline void shvps_protocol(double highest_kV, int cycles, const char *more)
 {
   char waveform[128];
   snprintf(waveform, sizeof waveform,
            "kind: triangle, low: 0 kV, high: %g kV, cycles: %d, frequency: 0.25 Hz", highest_kV,
            cycles);
-  shvps_protocol_of(s->device, waveform, more);
+  shvps_protocol_of(hv.device, waveform, more);
 }
 
 static inline void shvps_begin(struct supply *s)
@@ -70,12 +69,19 @@ static inline void shvps_begin(struct supply *s)
   supply_start(s);
 }
 
-/* One that plays triangles of 2 kV, and is above 1 kV; the program that drives it. */
-static inline pid_t shvps_playing(struct supply *s, const char *more)
+/* Starts it as told. */
+static inline void shvps_set_up(struct supply as)
 {
-  shvps_begin(s);
-  shvps_protocol(s, 2, 20, more);
+  hv = as;
+  shvps_begin(&hv);
+}
+
+/* It plays triangles of 2 kV, and is above 1 kV; the program that drives it. */
+static inline pid_t shvps_playing(struct supply as, const char *more)
+{
+  shvps_set_up(as);
+  shvps_protocol(2, 20, more);
   pid_t child = supply_arm_checked("played.h5");
-  assert_true(supply_reaches(s, 1000, 10));
+  assert_true(supply_reaches(&hv, 1000, 10));
   return child;
 }

@@ -113,13 +113,22 @@ static inline pid_t supply_arm_checked(const char *file)
   return supply_begin(text);
 }
 
-/* A supply that plays the usual protocol, and is above a voltage; the program that drives it. */
-static inline pid_t supply_playing(struct supply *s, double volts)
+static struct supply hv; // the one that is driven
+
+/* Starts it as told, with a protocol for it. */
+static inline void supply_set_up(struct supply as, int seconds, const char *more)
 {
-  supply_start(s);
-  supply_protocol(s, 20, SUPPLY_MEASURES);
+  hv = as;
+  supply_start(&hv);
+  supply_protocol(&hv, seconds, more);
+}
+
+/* It plays the usual protocol, and is above a voltage; the program that drives it. */
+static inline pid_t supply_playing(struct supply as, double volts)
+{
+  supply_set_up(as, 20, SUPPLY_MEASURES);
   pid_t child = supply_arm("played.h5");
-  assert_true(supply_reaches(s, volts, 10));
+  assert_true(supply_reaches(&hv, volts, 10));
   return child;
 }
 
@@ -163,21 +172,21 @@ static inline bool supply_said_zero(void)
 static const char supply_zero[] = "drive p.yaml --zero",
                   supply_checked[] = "drive p.yaml --zero --checked";
 
-static inline void supply_check_zero(struct supply *s, const char *arguments)
+static inline void supply_check_zero(const char *arguments)
 {
   int code = supply_run_dea(arguments, 60);
-  if (code != 0 || !supply_said_zero() || supply_volts(s) > supply_zero_V) {
-    fail_msg("exit code %d, %.0f V: %s%s", code, supply_volts(s), command_out, command_err);
+  if (code != 0 || !supply_said_zero() || supply_volts(&hv) > supply_zero_V) {
+    fail_msg("exit code %d, %.0f V: %s%s", code, supply_volts(&hv), command_out, command_err);
   }
 }
 
 /* Whether the supply was at 0 V when dea said so, and stayed there. */
-static inline void supply_check_said(struct supply *s, int code)
+static inline void supply_check_said(int code)
 {
-  double volts = supply_volts(s);
-  (void)supply_highest(s);
+  double volts = supply_volts(&hv);
+  (void)supply_highest(&hv);
   dea_clock_wait(2); // what it has in its queue
-  double later_V = supply_highest(s);
+  double later_V = supply_highest(&hv);
   if (supply_said_zero() && !(volts <= supply_zero_V && later_V <= supply_zero_V)) {
     fail_msg("'at 0 V' and exit code %d, with %.0f V at the end and %.0f V later", code, volts,
              later_V);

@@ -5,12 +5,19 @@
 
 #include <jansson.h>
 
-/* The JSON that was printed. */
-static json_t *printed(void)
+static json_t *root; // of the JSON that was printed last
+
+static void read_printed(void)
 {
-  json_t *root = json_loads(command_out, 0, NULL);
+  json_decref(root);
+  root = json_loads(command_out, 0, NULL);
   assert_non_null(root);
-  return root;
+}
+
+static int compare_tear_down(void **state)
+{
+  json_decref(root);
+  return command_tear_down(state);
 }
 
 static double number(const json_t *object, const char *key)
@@ -21,7 +28,7 @@ static double number(const json_t *object, const char *key)
 }
 
 /* Element of root[list] whose a is that name; with a half when half is not "". */
-static const json_t *find(const json_t *root, const char *list, const char *a, const char *half)
+static const json_t *find(const char *list, const char *a, const char *half)
 {
   size_t i;
   const json_t *one, *array = json_object_get(root, list);
@@ -42,8 +49,8 @@ static const json_t *find(const json_t *root, const char *list, const char *a, c
 TEST(test_misfits_against_the_voltage)
 {
   assert_int_equal(command_run("compare run red --json"), 0);
-  json_t *root = printed();
-  const json_t *lumped = find(root, "comparisons", "lumped", "");
+  read_printed();
+  const json_t *lumped = find("comparisons", "lumped", "");
   const json_t *z = json_array_get(json_object_get(lumped, "quantities"), 0);
   assert_string_equal(json_string_value(json_object_get(z, "quantity")), "centre_z_m");
   assert_close(number(z, "points"), 3, 0, 0);
@@ -58,55 +65,51 @@ TEST(test_misfits_against_the_voltage)
   const json_t *force = json_array_get(json_object_get(lumped, "quantities"), 1);
   assert_close(number(force, "rms"), 0, 0, 1e-15);
   assert_null(json_object_get(force, "chi_square_per_point")); // its scatter is not known
-  const json_t *solid = find(root, "comparisons", "3d", "");
+  const json_t *solid = find("comparisons", "3d", "");
   z = json_array_get(json_object_get(solid, "quantities"), 0);
   assert_close(number(z, "bias"), -620e-6 / 3.0, 1e-9, 0);
   assert_int_equal(json_array_size(json_object_get(root, "comparisons")), 2);
   assert_contains(command_err, "axisymmetric has no 'z centre', 'force' at the voltages of red",
                   "3d has no 'force' at the voltages of red");
-  json_decref(root);
 }
 
 TEST(test_profiles_within_the_film)
 {
   assert_int_equal(command_run("compare run red --json"), 0);
-  json_t *root = printed();
-  const json_t *along = find(root, "profiles", "3d", "along a fibre");
+  read_printed();
+  const json_t *along = find("profiles", "3d", "along a fibre");
   assert_close(number(along, "voltage_V"), 5000.0, 1e-12, 0);
   assert_close(number(along, "points"), 30, 0, 0); // -15 to 15 mm without 3 mm
   assert_close(number(along, "bias"), 2e-6, 1e-6, 0);
   assert_close(number(along, "rms"), 2e-6, 1e-6, 0);
   assert_close(number(along, "chi_square_per_point"), 0.25, 1e-6, 0);
   // Between fibres it is lower by 50 um s (1 - s), s = x/15 mm: most at 7 and 8 mm.
-  const json_t *between = find(root, "profiles", "3d", "between fibres");
+  const json_t *between = find("profiles", "3d", "between fibres");
   assert_close(number(between, "largest"), 50e-6 * 56.0 / 225.0 - 2e-6, 1e-6, 0);
   assert_close(fabs(fabs(number(between, "largest_at_m")) - 7.5e-3), 0.5e-3, 1e-9, 0);
   assert_int_equal(json_array_size(json_object_get(root, "profiles")), 2);
   assert_contains(command_err, "the profile of 3d at 5 kV is formed of those at the voltages");
-  json_decref(root);
 }
 
 TEST(test_history_on_one_clock)
 {
   assert_int_equal(command_run("compare run red --json"), 0);
-  json_t *root = printed();
-  const json_t *h = find(root, "histories", "lumped", "");
+  read_printed();
+  const json_t *h = find("histories", "lumped", "");
   assert_close(number(h, "shift_s"), 3.25, 0, 1e-6);
   assert_close(number(h, "edges"), 2, 0, 0);
   assert_close(number(h, "bias"), -6e-6, 1e-3, 0);
   assert_close(number(h, "largest"), 6e-6, 1e-3, 0);
   assert_contains(command_err, "moved by 3.25 s, which lays 2 of its pulses on measured ones");
-  json_decref(root);
   // Without a voltage the clocks are what they are, and that is said.
   command_folder_make("clockless");
   command_write("clockless/measurement.csv", points);
   write_history("clockless/history.csv", false);
   command_expect("compare run clockless --model lumped --json", 0,
                  "are taken as they are: no voltage was recorded");
-  root = printed();
-  assert_close(number(find(root, "histories", "lumped", ""), "shift_s"), 0, 0, 0);
+  read_printed();
+  assert_close(number(find("histories", "lumped", ""), "shift_s"), 0, 0, 0);
   assert_int_equal(json_array_size(json_object_get(root, "profiles")), 0);
-  json_decref(root);
 }
 
 /* What a monitor shows in time, in any unit of a length. */
@@ -116,11 +119,10 @@ TEST(test_history_of_a_monitor)
   command_write("hub/measurement.csv", points);
   command_write("hub/history.csv", "time (s),hub z (mm),other (V)\n0.5,0.299,1\n0.75,0.299,1\n");
   assert_int_equal(command_run("compare run hub --model lumped --json"), 0);
-  json_t *root = printed();
-  const json_t *h = find(root, "histories", "lumped", "");
+  read_printed();
+  const json_t *h = find("histories", "lumped", "");
   assert_string_equal(json_string_value(json_object_get(h, "quantity")), "hub_z_m");
   assert_close(number(h, "bias"), 1e-6, 1e-9, 0);
-  json_decref(root);
 }
 
 /* Pulses of the heights given, 1 s long, 2 s apart, from `start` on, 100 samples a second. */
@@ -179,12 +181,10 @@ TEST(test_a_run_as_the_reference_of_several)
   assert_int_equal(command_run("compare run run2 --model 3d:lumped --model lumped --json "
                                "--quantity centre_z_m"),
                    0);
-  json_t *root = printed();
-  const json_t *z =
-      json_array_get(json_object_get(find(root, "comparisons", "3d", ""), "quantities"), 0);
+  read_printed();
+  const json_t *z = json_array_get(json_object_get(find("comparisons", "3d", ""), "quantities"), 0);
   // 10 k^2 - 100 k for k = 0 ... 6: sum 910 - 2100
   assert_close(number(z, "bias"), -1190e-6 / 7.0, 1e-9, 0);
-  json_decref(root);
   command_expect("compare run run2 run --model alpha", 2, "run has no model of those asked for");
   command_expect("compare run run2 run --model lumped:alpha", 2,
                  "run has no curve of model 'alpha'");
@@ -213,11 +213,10 @@ TEST(test_opposite_signs_are_said)
                  "z centre of 3d and of below have opposite signs; nothing was "
                  "turned round: z is positive towards the fibres; was the sensor");
   assert_contains(command_err, "and model lumped, an upper bound, predicts no sign");
-  json_t *root = printed();
+  read_printed();
   const json_t *z =
-      json_array_get(json_object_get(find(root, "comparisons", "lumped", ""), "quantities"), 0);
+      json_array_get(json_object_get(find("comparisons", "lumped", ""), "quantities"), 0);
   assert_close(number(z, "bias"), (390e-6 + 820e-6) / 2.0, 1e-9, 0);
-  json_decref(root);
 }
 
-TESTS(compare_set_up, command_tear_down)
+TESTS(compare_set_up, compare_tear_down)

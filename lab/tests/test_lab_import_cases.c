@@ -5,20 +5,19 @@
 
 #define CASES DEA_SOURCE_DIR "/lab/tests/cases/"
 
-/* The recording of a file, guessed; NULL: it is refused. */
-static struct dea_recording *record(const char *name)
+/* Records a file, guessed; NULL: it is refused. */
+static void record(const char *name)
 {
-  struct dea_recording *recording = NULL;
   char file[400];
   snprintf(file, sizeof file, CASES "%s", name);
+  dea_recording_destroy(ctx, recording);
+  recording = NULL;
   if (read_table(file) == DEA_OK) {
-    (void)dea_table_record(ctx, table, NULL, &recording);
+    (void)record_table(NULL);
   }
-  return recording;
 }
 
-static const struct dea_channel *channel_of(const struct dea_recording *recording,
-                                            enum dea_channel_kind kind, size_t nth)
+static const struct dea_channel *channel_of(enum dea_channel_kind kind, size_t nth)
 {
   for (size_t i = 0; recording != NULL && i < recording->channel_count; i++) {
     if (recording->channels[i].kind == kind && nth-- == 0) {
@@ -48,7 +47,7 @@ static void assert_values(const struct dea_channel *channel, double start_s, dou
 static void assert_error(const char *name, size_t line, const char *part)
 {
   size_t count;
-  struct dea_recording *recording = record(name);
+  record(name);
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = 0; recording == NULL && i < count; i++) {
     if (findings[i].severity == DEA_ERROR && strstr(findings[i].text, part) != NULL &&
@@ -68,12 +67,11 @@ TEST(test_trailing_blanks)
   for (size_t i = 0; i < 4; i++) {
     char name[64];
     snprintf(name, sizeof name, "scope-trailing-blank/%s.csv", names[i]);
-    struct dea_recording *recording = record(name);
-    const struct dea_channel *second = channel_of(recording, DEA_CHANNEL_VOLTAGE, 0);
+    record(name);
+    const struct dea_channel *second = channel_of(DEA_CHANNEL_VOLTAGE, 0);
     assert_string_equal(second->name, "CH2");
     assert_values(second, -1e-3, 1e-3, v2, 3);
-    assert_values(channel_of(recording, DEA_CHANNEL_VOLTAGE, 1), -1e-3, 1e-3, v4, 3);
-    dea_recording_destroy(ctx, recording);
+    assert_values(channel_of(DEA_CHANNEL_VOLTAGE, 1), -1e-3, 1e-3, v4, 3);
   }
 }
 
@@ -90,15 +88,13 @@ TEST(test_graphtec)
     }
     volt[3] = i == 3 ? NAN : volt[3];
     snprintf(name, sizeof name, "graphtec/%s.csv", names[i]);
-    struct dea_recording *recording = record(name);
-    assert_values(channel_of(recording, DEA_CHANNEL_VOLTAGE, 0), 0, 0.2, volt, 7);
-    assert_values(channel_of(recording, DEA_CHANNEL_FORCE, 0), 0, 0.2, newton, 7);
-    dea_recording_destroy(ctx, recording);
+    record(name);
+    assert_values(channel_of(DEA_CHANNEL_VOLTAGE, 0), 0, 0.2, volt, 7);
+    assert_values(channel_of(DEA_CHANNEL_FORCE, 0), 0, 0.2, newton, 7);
   }
-  struct dea_recording *recording = record("graphtec/slow-1500ms.csv");
+  record("graphtec/slow-1500ms.csv");
   static const double slow[] = {0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5};
-  assert_values(channel_of(recording, DEA_CHANNEL_VOLTAGE, 0), 0, 1.5, slow, 8);
-  dea_recording_destroy(ctx, recording);
+  assert_values(channel_of(DEA_CHANNEL_VOLTAGE, 0), 0, 1.5, slow, 8);
 }
 
 TEST(test_repeated_rows)
@@ -126,8 +122,7 @@ TEST(test_named_column_of_text)
 {
   read_text("t.csv", "t (s),V (kV),F (N)\n0,1,1\n1,sat,1\n2,sat,1\n");
   struct dea_mapping *mapping = map_text("dea-import: 1\ncolumns:\n  - {column: V, as: voltage}\n");
-  struct dea_recording *recording;
-  assert_int_equal(dea_table_record(ctx, table, mapping, &recording), DEA_E_DESIGN);
+  assert_int_equal(record_table(mapping), DEA_E_DESIGN);
   assert_true(is_said(DEA_ERROR, "'sat' of the column 'V' is not a number"));
   dea_mapping_destroy(ctx, mapping);
 }
@@ -140,32 +135,28 @@ TEST(test_encodings)
   for (size_t i = 0; i < 2; i++) {
     char name[64];
     snprintf(name, sizeof name, "shift-jis/%s.csv", names[i]);
-    struct dea_recording *recording = record(name);
-    assert_values(channel_of(recording, DEA_CHANNEL_VOLTAGE, 0), 0, 0.1, kilovolt, 3);
-    assert_values(channel_of(recording, DEA_CHANNEL_DISPLACEMENT, 0), 0, 0.1, mm, 3);
-    dea_recording_destroy(ctx, recording);
+    record(name);
+    assert_values(channel_of(DEA_CHANNEL_VOLTAGE, 0), 0, 0.1, kilovolt, 3);
+    assert_values(channel_of(DEA_CHANNEL_DISPLACEMENT, 0), 0, 0.1, mm, 3);
   }
   static const char *const frames[] = {"same-utf8", "utm", "utm-units-row"};
   static const double newton[] = {0, 0.015, 0.031, 0.046}, way[] = {0, 1e-4, 2e-4, 3e-4};
   for (size_t i = 0; i < 3; i++) {
     char name[64];
     snprintf(name, sizeof name, "shift-jis/%s.csv", frames[i]);
-    struct dea_recording *recording = record(name);
-    const struct dea_channel *force = channel_of(recording, DEA_CHANNEL_FORCE, 0);
+    record(name);
+    const struct dea_channel *force = channel_of(DEA_CHANNEL_FORCE, 0);
     assert_string_equal(force->name, "\xe8\xa9\xa6\xe9\xa8\x93\xe5\x8a\x9b");
     assert_values(force, 0, 0.1, newton, i == 1 ? 4 : 3);
-    assert_values(channel_of(recording, DEA_CHANNEL_DISPLACEMENT, 0), 0, 0.1, way, i == 1 ? 4 : 3);
-    dea_recording_destroy(ctx, recording);
+    assert_values(channel_of(DEA_CHANNEL_DISPLACEMENT, 0), 0, 0.1, way, i == 1 ? 4 : 3);
   }
-  struct dea_recording *recording = record("shift-jis/laser-no-unit.csv");
+  record("shift-jis/laser-no-unit.csv");
   assert_int_equal(recording->channel_count, 1); // the laser's unit is not said
-  assert_values(channel_of(recording, DEA_CHANNEL_VOLTAGE, 0), 0, 0.1, kilovolt, 3);
-  dea_recording_destroy(ctx, recording);
+  assert_values(channel_of(DEA_CHANNEL_VOLTAGE, 0), 0, 0.1, kilovolt, 3);
   static const double um[] = {0, 1e-5, 2e-5};
-  recording = record("shift-jis/cp1251.csv");
-  assert_values(channel_of(recording, DEA_CHANNEL_VOLTAGE, 0), 0, 0.1, kilovolt, 3);
-  assert_values(channel_of(recording, DEA_CHANNEL_DISPLACEMENT, 0), 0, 0.1, um, 3);
-  dea_recording_destroy(ctx, recording);
+  record("shift-jis/cp1251.csv");
+  assert_values(channel_of(DEA_CHANNEL_VOLTAGE, 0), 0, 0.1, kilovolt, 3);
+  assert_values(channel_of(DEA_CHANNEL_DISPLACEMENT, 0), 0, 0.1, um, 3);
   assert_error("shift-jis/korean.csv", 1,
                "letters in an encoding that is not known: save as UTF-8");
 }

@@ -7,7 +7,7 @@
 static const double pulled_m[] = {0, 0.167e-3, 0.334e-3, 0.501e-3};
 static const double pulled_N[] = {0.0012, 0.0243, 0.0481, 0.0702};
 
-static void assert_pull(struct dea_recording *recording, const char *way, const char *force)
+static void assert_pull(const char *way, const char *force)
 {
   const struct dea_channel *z = dea_recording_channel(recording, way);
   const struct dea_channel *f = dea_recording_channel(recording, force);
@@ -20,25 +20,24 @@ static void assert_pull(struct dea_recording *recording, const char *way, const 
     assert_close(z->values[i], pulled_m[i], 1e-12, 1e-18);
     assert_close(f->values[i], pulled_N[i], 1e-12, 0);
   }
-  dea_recording_destroy(ctx, recording);
 }
 
 /* Instron Bluehill: "key : value" lines, quoted titles, a line of units. */
 TEST(test_bluehill)
 {
-  assert_pull(record_file("vhb 10x20 mm 1 mm.csv",
-                          "\"Test Method : Tensile.im_tens\"\r\n\"Sample name : VHB 4910\"\r\n"
-                          "\"Width : 10.00 mm\"\r\n\"Rate 1 : 100 mm/min\"\r\n\r\n"
-                          "\"Time\",\"Extension\",\"Load\",\"Tensile stress\"\r\n"
-                          "\"(s)\",\"(mm)\",\"(N)\",\"(MPa)\"\r\n"
-                          "\"0.000\",\"0.000\",\"0.0012\",\"0.0001\"\r\n"
-                          "\"0.100\",\"0.167\",\"0.0243\",\"0.0024\"\r\n"
-                          "\"0.200\",\"0.334\",\"0.0481\",\"0.0048\"\r\n"
-                          "\"0.300\",\"0.501\",\"0.0702\",\"0.0070\"\r\n",
-                          "dea-import: 1\ntime: Time\ncolumns:\n"
-                          "  - {column: Extension, as: displacement}\n"
-                          "  - {column: Load, as: force}\nignore: [\"*sile s*ess\"]\n"),
-              "Extension", "Load");
+  record_file("vhb 10x20 mm 1 mm.csv",
+              "\"Test Method : Tensile.im_tens\"\r\n\"Sample name : VHB 4910\"\r\n"
+              "\"Width : 10.00 mm\"\r\n\"Rate 1 : 100 mm/min\"\r\n\r\n"
+              "\"Time\",\"Extension\",\"Load\",\"Tensile stress\"\r\n"
+              "\"(s)\",\"(mm)\",\"(N)\",\"(MPa)\"\r\n"
+              "\"0.000\",\"0.000\",\"0.0012\",\"0.0001\"\r\n"
+              "\"0.100\",\"0.167\",\"0.0243\",\"0.0024\"\r\n"
+              "\"0.200\",\"0.334\",\"0.0481\",\"0.0048\"\r\n"
+              "\"0.300\",\"0.501\",\"0.0702\",\"0.0070\"\r\n",
+              "dea-import: 1\ntime: Time\ncolumns:\n"
+              "  - {column: Extension, as: displacement}\n"
+              "  - {column: Load, as: force}\nignore: [\"*sile s*ess\"]\n");
+  assert_pull("Extension", "Load");
 }
 
 /* JSON of TRIOS: columns by key, rows in any order of keys, columns of text, a missing value. */
@@ -60,14 +59,14 @@ TEST(test_trios)
   static const char map[] = "dea-import: 1\ntime: Time\ncolumns:\n"
                             "  - {column: Gap, as: displacement}\n"
                             "  - {column: Axial force, as: force}\n";
-  assert_pull(record_file("strip.json",
-                          "\xef\xbb\xbf{\"Schema\": {\"Url\": \"TRIOSJSONExportSchema\"},"
-                          "\"Sample\": {\"Name\": \"VHB\"}, \"Results\": {\"Unprocessed\": {},"
-                          "\"Processed\": {" TRIOS_HEADERS TRIOS_ROWS "}}}",
-                          map),
-              "Gap", "Axial force");
-  assert_pull(record_file("old.json", "{\"Results\": {" TRIOS_HEADERS TRIOS_ROWS "}}", map), "Gap",
-              "Axial force");
+  record_file("strip.json",
+              "\xef\xbb\xbf{\"Schema\": {\"Url\": \"TRIOSJSONExportSchema\"},"
+              "\"Sample\": {\"Name\": \"VHB\"}, \"Results\": {\"Unprocessed\": {},"
+              "\"Processed\": {" TRIOS_HEADERS TRIOS_ROWS "}}}",
+              map);
+  assert_pull("Gap", "Axial force");
+  record_file("old.json", "{\"Results\": {" TRIOS_HEADERS TRIOS_ROWS "}}", map);
+  assert_pull("Gap", "Axial force");
   read_text("gap.json",
             "{\"Results\": {" TRIOS_HEADERS "\"Rows\": [{\"Time_s\": 1}, {\"Gap_mm\": null}]}}");
   assert_int_equal(table->column_count, 3);
@@ -101,19 +100,19 @@ TEST(test_trios_that_is_wrong)
 /* Decimal commas, semicolons, Latin-1, kN. */
 TEST(test_decimal_comma)
 {
-  assert_pull(record_file("zug.csv",
-                          "\"Pr\xfc"
-                          "fmethode : Zug.im_tens\"\r\n\"Vorkraft : 0,01 N\"\r\n\r\n"
-                          "\"Zeit\";\"Verl\xe4ngerung\";\"Kraft\"\r\n"
-                          "\"(s)\";\"(mm)\";\"(kN)\"\r\n"
-                          "\"0,000\";\"0,000\";\"0,0000012\"\r\n"
-                          "\"0,100\";\"0,167\";\"0,0000243\"\r\n"
-                          "\"0,200\";\"0,334\";\"0,0000481\"\r\n"
-                          "\"0,300\";\"0,501\";\"0,0000702\"\r\n",
-                          "dea-import: 1\ntime: Zeit\ncolumns:\n"
-                          "  - {column: Verl\xc3\xa4ngerung, as: displacement, name: way}\n"
-                          "  - {column: Kraft, as: force}\n"),
-              "way", "Kraft");
+  record_file("zug.csv",
+              "\"Pr\xfc"
+              "fmethode : Zug.im_tens\"\r\n\"Vorkraft : 0,01 N\"\r\n\r\n"
+              "\"Zeit\";\"Verl\xe4ngerung\";\"Kraft\"\r\n"
+              "\"(s)\";\"(mm)\";\"(kN)\"\r\n"
+              "\"0,000\";\"0,000\";\"0,0000012\"\r\n"
+              "\"0,100\";\"0,167\";\"0,0000243\"\r\n"
+              "\"0,200\";\"0,334\";\"0,0000481\"\r\n"
+              "\"0,300\";\"0,501\";\"0,0000702\"\r\n",
+              "dea-import: 1\ntime: Zeit\ncolumns:\n"
+              "  - {column: Verl\xc3\xa4ngerung, as: displacement, name: way}\n"
+              "  - {column: Kraft, as: force}\n");
+  assert_pull("way", "Kraft");
 }
 
 /* GB18030 as it is saved in China, each number in quotes: names are letters, not noise. */
@@ -124,11 +123,11 @@ TEST(test_gb18030)
                               "\"(s)\",\"(mm)\",\"(N)\"\r\n"
                               "\"0.00\",\"0.000\",\"0.0012\"\r\n\"0.10\",\"0.167\",\"0.0243\"\r\n"
                               "\"0.20\",\"0.334\",\"0.0481\"\r\n\"0.30\",\"0.501\",\"0.0702\"\r\n";
-  assert_pull(record_file("gb.csv", bytes,
-                          "dea-import: 1\ntime: \xe6\x97\xb6\xe9\x97\xb4\ncolumns:\n"
-                          "  - {column: \xe4\xbd\x8d\xe7\xa7\xbb, as: displacement}\n"
-                          "  - {column: \xe5\x8a\x9b, as: force}\n"),
-              "\xe4\xbd\x8d\xe7\xa7\xbb", "\xe5\x8a\x9b");
+  record_file("gb.csv", bytes,
+              "dea-import: 1\ntime: \xe6\x97\xb6\xe9\x97\xb4\ncolumns:\n"
+              "  - {column: \xe4\xbd\x8d\xe7\xa7\xbb, as: displacement}\n"
+              "  - {column: \xe5\x8a\x9b, as: force}\n");
+  assert_pull("\xe4\xbd\x8d\xe7\xa7\xbb", "\xe5\x8a\x9b");
   // a sign of Latin-1 is not half of a letter, and UTF-8 stays what it is
   static const double values[] = {1, 2};
   read_text("latin.csv", "\xc4nderung (\xb5m);Gr\xf6\xdf"
@@ -155,11 +154,10 @@ TEST(test_times_as_text)
       snprintf(text + at, sizeof text - at, "%s;%.3f;%.4f\n", times[k][i], 1e3 * pulled_m[i],
                pulled_N[i]);
     }
-    assert_pull(
-        record_file("clock.csv", text,
-                    "dea-import: 1\ntime: When\ncolumns:\n"
-                    "  - {column: Travel, as: displacement}\n  - {column: Load, as: force}\n"),
-        "Travel", "Load");
+    record_file("clock.csv", text,
+                "dea-import: 1\ntime: When\ncolumns:\n"
+                "  - {column: Travel, as: displacement}\n  - {column: Load, as: force}\n");
+    assert_pull("Travel", "Load");
   }
 }
 

@@ -3,13 +3,13 @@
 #include "import_text.h"
 
 /* A recording of a text file; mapping: NULL guesses. */
-static struct dea_recording *record_text(const char *text, const char *map)
+static void record_text(const char *text, const char *map)
 {
-  return record_file("table.csv", text, map);
+  record_file("table.csv", text, map);
 }
 
-static void assert_channel(const struct dea_recording *recording, const char *name,
-                           enum dea_channel_kind kind, const double *values, size_t count)
+static void assert_channel(const char *name, enum dea_channel_kind kind, const double *values,
+                           size_t count)
 {
   const struct dea_channel *channel = dea_recording_channel(recording, name);
   if (channel == NULL) {
@@ -27,101 +27,89 @@ TEST(test_guesses)
 {
   static const double v[] = {0, 500, 1000}, i[] = {1e-6, 2e-6, 3e-6}, z[] = {0, 1e-5, 2e-5},
                       f[] = {0.001, 0.002, 0.003}, c[] = {0, 510, 1020};
-  struct dea_recording *recording =
-      record_text("Zeit (ms);HV Monitor (kV);Strom (\xc2\xb5"
-                  "A);Laser (\xc2\xb5m);Kraft (mN);Setpoint (V);Temperature (K);Ch 7\n"
-                  "0;0;1;0;1;0;293;1\n0,1;0,5;2;10;2;510;293;2\n0,2;1;3;20;3;1020;294;3\n",
-                  NULL);
-  assert_channel(recording, "HV Monitor", DEA_CHANNEL_VOLTAGE, v, 3);
-  assert_channel(recording, "Strom", DEA_CHANNEL_CURRENT, i, 3);
-  assert_channel(recording, "Laser", DEA_CHANNEL_DISPLACEMENT, z, 3);
-  assert_channel(recording, "Kraft", DEA_CHANNEL_FORCE, f, 3);
-  assert_channel(recording, "Setpoint", DEA_CHANNEL_COMMAND, c, 3);
+  record_text("Zeit (ms);HV Monitor (kV);Strom (\xc2\xb5"
+              "A);Laser (\xc2\xb5m);Kraft (mN);Setpoint (V);Temperature (K);Ch 7\n"
+              "0;0;1;0;1;0;293;1\n0,1;0,5;2;10;2;510;293;2\n0,2;1;3;20;3;1020;294;3\n",
+              NULL);
+  assert_channel("HV Monitor", DEA_CHANNEL_VOLTAGE, v, 3);
+  assert_channel("Strom", DEA_CHANNEL_CURRENT, i, 3);
+  assert_channel("Laser", DEA_CHANNEL_DISPLACEMENT, z, 3);
+  assert_channel("Kraft", DEA_CHANNEL_FORCE, f, 3);
+  assert_channel("Setpoint", DEA_CHANNEL_COMMAND, c, 3);
   assert_int_equal(recording->channel_count, 5);
   assert_close(recording->channels[0].interval_s, 1e-4, 1e-12, 0);
   assert_true(is_said(DEA_NOTE, "'Laser' in \xc2\xb5m is taken as displacement"));
   assert_true(is_said(DEA_NOTE, "left out: 'Temperature', 'Ch 7'"));
-  dea_recording_destroy(ctx, recording);
   // without units, and a monitor that nobody scaled
-  recording = record_text("t,voltage\n0,1\n1,2\n2,3\n", NULL);
+  record_text("t,voltage\n0,1\n1,2\n2,3\n", NULL);
   assert_true(is_said(DEA_WARNING, "'voltage' has no unit"));
   assert_true(is_said(DEA_WARNING, "never exceeds 3 V"));
-  dea_recording_destroy(ctx, recording);
   // how far a column may be off is not that column, nor a time
-  recording = record_text("t (s);V (kV);V std (kV);z_centre (um);z_centre_SD (um);laser error (um);"
-                          "laser sigma;Stdev force (mN);uncertainty of F (mN);t err (s);"
-                          "\xcf\x83 z (um);standard (um)\n"
-                          "0;0;1;0;1;1;1;1;1;1;1;0\n0,1;0,5;1;10;1;1;1;1;1;1;1;10\n"
-                          "0,2;1;1;20;1;1;1;1;1;1;1;20\n",
-                          NULL);
-  assert_channel(recording, "V", DEA_CHANNEL_VOLTAGE, v, 3);
-  assert_channel(recording, "z_centre", DEA_CHANNEL_DISPLACEMENT, z, 3);
-  assert_channel(recording, "standard", DEA_CHANNEL_DISPLACEMENT, z, 3);
+  record_text("t (s);V (kV);V std (kV);z_centre (um);z_centre_SD (um);laser error (um);"
+              "laser sigma;Stdev force (mN);uncertainty of F (mN);t err (s);"
+              "\xcf\x83 z (um);standard (um)\n"
+              "0;0;1;0;1;1;1;1;1;1;1;0\n0,1;0,5;1;10;1;1;1;1;1;1;1;10\n"
+              "0,2;1;1;20;1;1;1;1;1;1;1;20\n",
+              NULL);
+  assert_channel("V", DEA_CHANNEL_VOLTAGE, v, 3);
+  assert_channel("z_centre", DEA_CHANNEL_DISPLACEMENT, z, 3);
+  assert_channel("standard", DEA_CHANNEL_DISPLACEMENT, z, 3);
   assert_int_equal(recording->channel_count, 3);
   assert_close(recording->channels[0].interval_s, 0.1, 1e-12, 0);
   assert_true(is_said(DEA_NOTE, "'V std' (by its name an uncertainty of something; if"));
-  dea_recording_destroy(ctx, recording);
   // a rate in the preamble; a sensor in volts is not taken for a length
-  recording = record_text("Sample rate: 2 kHz\nHV (kV),laser (V)\n0,1\n1,2\n2,3\n", NULL);
+  record_text("Sample rate: 2 kHz\nHV (kV),laser (V)\n0,1\n1,2\n2,3\n", NULL);
   assert_close(recording->channels[0].interval_s, 5e-4, 1e-12, 0);
   assert_int_equal(recording->channel_count, 1);
   assert_true(is_said(DEA_NOTE, "say per_unit"));
-  dea_recording_destroy(ctx, recording);
 }
 
 TEST(test_mapping)
 {
   static const double v[] = {100, 1100, -900}, z[] = {-0.0025, -0.0015, -0.0005}, x[] = {5, 6, 7};
-  struct dea_recording *recording = record_text(
+  record_text(
       "Dev1/ai0,Dev1/ai1,k,junk\n0,0,5,1\n1,1,6,1\n-1,2,7,1\n",
       "dea-import: 1\ntitle: A run\nrate: 10 kHz\ncolumns:\n"
       "  - {column: dev1/AI0, as: voltage, unit: V, per_unit: 1 kV, at_zero: 100 V, name: high}\n"
       "  - {column: Dev1/ai1, as: displacement, per_unit: 1 mm, at_zero: -2.5 mm, filter: 50 Hz}\n"
       "  - {column: k, as: other, unit: counts}\nignore: [ju*]\n");
-  assert_channel(recording, "high", DEA_CHANNEL_VOLTAGE, v, 3);
-  assert_channel(recording, "Dev1/ai1", DEA_CHANNEL_DISPLACEMENT, z, 3);
-  assert_channel(recording, "k", DEA_CHANNEL_OTHER, x, 3);
+  assert_channel("high", DEA_CHANNEL_VOLTAGE, v, 3);
+  assert_channel("Dev1/ai1", DEA_CHANNEL_DISPLACEMENT, z, 3);
+  assert_channel("k", DEA_CHANNEL_OTHER, x, 3);
   assert_string_equal(recording->channels[2].unit, "counts");
   assert_string_equal(recording->title, "A run");
   assert_close(recording->channels[0].interval_s, 1e-4, 1e-12, 0);
   assert_close(recording->channels[1].filter_Hz, 50, 1e-12, 0);
   assert_false(is_said(DEA_NOTE, "left out"));
-  dea_recording_destroy(ctx, recording);
   // the unit of times that are found by themselves; times that a rate replaces are told
-  recording = record_text("Time,HV\n5,0\n6,1\n7,2\n", "dea-import: 1\ntime_unit: ms\ncolumns:\n"
-                                                      "  - {column: HV, as: voltage, unit: kV}\n");
+  record_text("Time,HV\n5,0\n6,1\n7,2\n", "dea-import: 1\ntime_unit: ms\ncolumns:\n"
+                                          "  - {column: HV, as: voltage, unit: kV}\n");
   assert_close(recording->channels[0].start_s, 5e-3, 1e-12, 0);
   assert_close(recording->channels[0].interval_s, 1e-3, 1e-12, 0);
-  dea_recording_destroy(ctx, recording);
-  recording =
-      record_text("Time (s),HV\n5,0\n6,1\n7,2\n", "dea-import: 1\nrate: 10 kHz\ncolumns:\n"
-                                                  "  - {column: HV, as: voltage, unit: kV}\n");
+  record_text("Time (s),HV\n5,0\n6,1\n7,2\n", "dea-import: 1\nrate: 10 kHz\ncolumns:\n"
+                                              "  - {column: HV, as: voltage, unit: kV}\n");
   assert_close(recording->channels[0].interval_s, 1e-4, 1e-12, 0);
   assert_true(is_said(DEA_WARNING, "in place of the times 'Time'"));
-  dea_recording_destroy(ctx, recording);
   // the file's own unit of its times counts
-  recording =
-      record_text("Time (s),HV\n5,0\n6,1\n7,2\n", "dea-import: 1\ntime_unit: ms\ncolumns:\n"
-                                                  "  - {column: HV, as: voltage, unit: kV}\n");
+  record_text("Time (s),HV\n5,0\n6,1\n7,2\n", "dea-import: 1\ntime_unit: ms\ncolumns:\n"
+                                              "  - {column: HV, as: voltage, unit: kV}\n");
   assert_close(recording->channels[0].interval_s, 1, 1e-12, 0);
-  dea_recording_destroy(ctx, recording);
   // a clock of its own, and one that is not uniform
-  recording = record_text("t1 (ms),V (kV),t2 (s),F (mN)\n0,1,5,1\n1,2,5.1,2\n2,3,7,3\n",
-                          "dea-import: 1\ntime: t1\ncolumns:\n  - {column: V, as: voltage}\n"
-                          "  - {column: F, as: force, per_unit: -2, time: t2}\n");
+  record_text("t1 (ms),V (kV),t2 (s),F (mN)\n0,1,5,1\n1,2,5.1,2\n2,3,7,3\n",
+              "dea-import: 1\ntime: t1\ncolumns:\n  - {column: V, as: voltage}\n"
+              "  - {column: F, as: force, per_unit: -2, time: t2}\n");
   const struct dea_channel *force = dea_recording_kind(recording, DEA_CHANNEL_FORCE);
   assert_true(force->interval_s == 0);
   assert_close(force->time_s[1], 5.1, 1e-15, 0);
   assert_close(force->values[2], -0.006, 1e-14, 0);
   assert_close(recording->channels[0].interval_s, 1e-3, 1e-12, 0);
-  dea_recording_destroy(ctx, recording);
 }
 
 TEST(test_profile)
 {
   const char *text = "t (s),z1,z2,z3,zero\n0,1,2,3,9\n0.5,4,5,6,9\n";
   for (int turned = 0; turned < 2; turned++) {
-    struct dea_recording *recording = record_text(
+    record_text(
         turned ? "t (s),front z1,front z2,front z3,zero\n0,,2,3,9\n0.5,4,5,6,9\n" : text,
         turned ? "dea-import: 1\nprofile: {columns: '*z*', unit: mm, x_from: 15 mm, x_to: -15 mm}\n"
                  "columns: [{column: zero, as: other}]\n"
@@ -140,7 +128,6 @@ TEST(test_profile)
       assert_close(p->z_m[0], 6e-3, 1e-14, 0);
       assert_close(p->z_m[5], 1e-3, 1e-14, 0);
     }
-    dea_recording_destroy(ctx, recording);
   }
 }
 
@@ -178,7 +165,6 @@ TEST(test_mapping_errors)
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     struct dea_mapping *mapping = NULL;
-    struct dea_recording *recording = NULL;
     if (cases[i].table != NULL) {
       read_text("t.csv", cases[i].table);
     }
@@ -187,7 +173,7 @@ TEST(test_mapping_errors)
         dea_mapping_read_memory(ctx, "map.yaml", cases[i].map, strlen(cases[i].map), &mapping);
     if (cases[i].table != NULL) {
       assert_int_equal(status, DEA_OK);
-      status = dea_table_record(ctx, table, mapping, &recording);
+      status = record_table(mapping);
     }
     assert_int_equal(status, DEA_E_DESIGN);
     size_t count, found = 0;
@@ -218,17 +204,15 @@ TEST(test_clock_errors)
       {"Time,V (kV)\n,\n46348.4188,1\n46348.4189,2\n46348.4190,3\n", "spreadsheet"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    struct dea_recording *recording;
     read_text("t.csv", cases[i].text);
-    assert_int_equal(dea_table_record(ctx, table, NULL, &recording), DEA_E_IO);
+    assert_int_equal(record_table(NULL), DEA_E_IO);
     assert_true(is_said(DEA_ERROR, cases[i].part));
   }
-  struct dea_recording *recording;
   read_text("t.csv", "V (kV),F (N)\n1,2\n2,3\n");
-  assert_int_equal(dea_table_record(ctx, table, NULL, &recording), DEA_E_IO);
+  assert_int_equal(record_table(NULL), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "rate: 10 kHz"));
   read_text("t.csv", "a,b\n1,2\n2,3\n");
-  assert_int_equal(dea_table_record(ctx, table, NULL, &recording), DEA_E_IO);
+  assert_int_equal(record_table(NULL), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "could be taken for anything"));
 }
 
@@ -236,8 +220,8 @@ TEST(test_clock_errors)
  * on. Rows without a time and without a value say nothing. */
 TEST(test_rows_without_a_time)
 {
-  struct dea_recording *recording = record_text(
-      "t1 (s),V (kV),t2 (ms),z (um)\n,,,\n0,1,0,5\n1,2,500,6\n,,1000,\n2,,,\n3,4,,\n", NULL);
+  record_text("t1 (s),V (kV),t2 (ms),z (um)\n,,,\n0,1,0,5\n1,2,500,6\n,,1000,\n2,,,\n3,4,,\n",
+              NULL);
   const struct dea_channel *v = &recording->channels[0], *z = &recording->channels[1];
   assert_int_equal(v->count, 4);
   assert_close(v->interval_s, 1, 1e-12, 0);
@@ -246,37 +230,29 @@ TEST(test_rows_without_a_time)
   assert_close(z->interval_s, 0.5, 1e-12, 0);
   assert_close(z->values[1], 6e-6, 1e-12, 0);
   assert_true(isnan(z->values[2]));
-  dea_recording_destroy(ctx, recording);
-  recording = record_text("t (s),V (kV)\n0,1\n1,2\n,\n5,3\n", NULL);
+  record_text("t (s),V (kV)\n0,1\n1,2\n,\n5,3\n", NULL);
   assert_int_equal(recording->channels[0].count, 3);
   assert_true(recording->channels[0].time_s[2] == 5 && recording->channels[0].values[2] == 3000);
-  dea_recording_destroy(ctx, recording);
 }
 
 /* A column in ms that is always the same is no clock. */
 TEST(test_constant_times)
 {
-  struct dea_recording *recording =
-      record_text("Time (s),Exposure (ms),V (kV)\n0,3,1\n1,3,2\n2,3,3\n", NULL);
+  record_text("Time (s),Exposure (ms),V (kV)\n0,3,1\n1,3,2\n2,3,3\n", NULL);
   assert_int_equal(recording->channel_count, 1);
   assert_close(recording->channels[0].interval_s, 1, 1e-12, 0);
-  dea_recording_destroy(ctx, recording);
 }
 
 /* Times written with few digits are uniform; a lost sample is not. Since 1970 becomes since 0. */
 TEST(test_jitter)
 {
-  struct dea_recording *recording =
-      record_text("t (s),V (kV)\n0.000000,1\n0.000333,2\n0.000667,3\n0.001000,4\n", NULL);
+  record_text("t (s),V (kV)\n0.000000,1\n0.000333,2\n0.000667,3\n0.001000,4\n", NULL);
   assert_close(recording->channels[0].interval_s, 1.0 / 3000, 1e-6, 0);
-  dea_recording_destroy(ctx, recording);
-  recording = record_text("t (s),V (kV)\n0,1\n1,2\n3,3\n4,4\n", NULL);
+  record_text("t (s),V (kV)\n0,1\n1,2\n3,3\n4,4\n", NULL);
   assert_true(recording->channels[0].interval_s == 0);
-  dea_recording_destroy(ctx, recording);
-  recording = record_text("t (s),V (kV)\n1700000000,1\n1700000001,2\n1700000002,3\n", NULL);
+  record_text("t (s),V (kV)\n1700000000,1\n1700000001,2\n1700000002,3\n", NULL);
   assert_true(recording->channels[0].start_s == 0);
   assert_true(is_said(DEA_NOTE, "the first one becomes 0"));
-  dea_recording_destroy(ctx, recording);
 }
 
 /* Times of day count from their first, which must be the same moment in both files. */
@@ -361,17 +337,17 @@ static void record_once(struct dea_context *own)
 {
   struct dea_table *read;
   struct dea_mapping *mapping = NULL;
-  struct dea_recording *recording = NULL;
+  struct dea_recording *made = NULL;
   const char *map = "dea-import: 1\ncolumns: [{column: V, as: voltage}]\n"
                     "profile: {columns: 'z*', unit: mm, x_from: 0 mm, x_to: 1 mm}\n";
   dea_status status = dea_mapping_read_memory(own, "m", map, strlen(map), &mapping);
   status = status == DEA_OK ? dea_table_read(own, in_folder("memory.csv"), NULL, &read) : status;
   if (status == DEA_OK) {
-    status = dea_table_record(own, read, mapping, &recording);
+    status = dea_table_record(own, read, mapping, &made);
     dea_table_destroy(own, read);
   }
   failing_check(own, status);
-  dea_recording_destroy(own, recording);
+  dea_recording_destroy(own, made);
   dea_mapping_destroy(own, mapping);
 }
 

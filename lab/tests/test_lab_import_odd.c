@@ -4,14 +4,12 @@
 #include "recording/recording.h"
 
 /* Reads and records a text; the first finding that holds `said` (NULL: none is looked for). */
-static dea_status record(const char *name, const char *text, const char *said,
-                         struct dea_recording **out)
+static dea_status record(const char *name, const char *text, const char *said)
 {
   size_t count;
-  *out = NULL;
   write_bytes(name, text, strlen(text));
   dea_status status = read_table(in_folder(name));
-  status = status == DEA_OK ? dea_table_record(ctx, table, NULL, out) : status;
+  status = status == DEA_OK ? record_table(NULL) : status;
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   bool found = said == NULL;
   for (size_t i = 0; i < count && !found; i++) {
@@ -25,9 +23,7 @@ static dea_status record(const char *name, const char *text, const char *said,
 
 static void refused(const char *name, const char *text, const char *said)
 {
-  struct dea_recording *recording;
-  assert_int_equal(record(name, text, said, &recording), DEA_E_IO);
-  assert_null(recording);
+  assert_int_equal(record(name, text, said), DEA_E_IO);
 }
 
 TEST(test_thousands)
@@ -44,19 +40,14 @@ TEST(test_thousands)
 
 TEST(test_times_of_unknown_unit)
 {
-  struct dea_recording *recording;
   refused("ms.csv", "timestamp,V (kV)\n1795341781250,1\n1795341781260,2\n", "ms since 1970");
   refused("us.csv", "time,V (kV)\n1795341781250000,1\n1795341781260000,2\n", "us since 1970");
   refused("day.csv", "Time,V (kV)\n46348.4188,1\n46348.4189,2\n46348.4190,3\n", "spreadsheet");
   // seconds of the day, seconds since 1970 and since 1904 are no such thing
-  assert_int_equal(record("s.csv", "Time,V (kV)\n46348.5,1\n46349.5,2\n", "taken in s", &recording),
-                   DEA_OK);
+  assert_int_equal(record("s.csv", "Time,V (kV)\n46348.5,1\n46349.5,2\n", "taken in s"), DEA_OK);
   assert_close(recording->channels[0].interval_s, 1, 1e-9, 0);
-  dea_recording_destroy(ctx, recording);
-  assert_int_equal(
-      record("e.csv", "Time,V (kV)\n3878186581,1\n3878186582,2\n", "taken in s", &recording),
-      DEA_OK);
-  dea_recording_destroy(ctx, recording);
+  assert_int_equal(record("e.csv", "Time,V (kV)\n3878186581,1\n3878186582,2\n", "taken in s"),
+                   DEA_OK);
 }
 
 TEST(test_units_in_titles)
@@ -67,14 +58,12 @@ TEST(test_units_in_titles)
       "\"Time, us\",\"Force, uN\"", "Time/\xc2\xb5s,Force/\xc2\xb5N"};
   for (size_t i = 0; i < sizeof titles / sizeof titles[0]; i++) {
     char text[200], name[32];
-    struct dea_recording *recording;
     snprintf(text, sizeof text, "%s\n0,0\n2,4\n4,8\n", titles[i]);
     snprintf(name, sizeof name, "unit-%zu.csv", i);
-    assert_int_equal(record(name, text, NULL, &recording), DEA_OK);
+    assert_int_equal(record(name, text, NULL), DEA_OK);
     assert_string_equal(recording->channels[0].name, "Force");
     assert_close(recording->channels[0].interval_s, 2e-6, 1e-9, 0);
     assert_close(recording->channels[0].values[2], 8e-6, 1e-9, 0);
-    dea_recording_destroy(ctx, recording);
   }
   static const double v[] = {1, 2};
   read_text("kv.csv", "Time (s),Voltage (KV)\n0,1\n1,2\n");
@@ -84,7 +73,6 @@ TEST(test_units_in_titles)
 /* Units that are not known, and columns with a unit that hold no numbers. */
 TEST(test_odd_units)
 {
-  struct dea_recording *recording;
   const char *odd = "its unit is not known";
   static const char *const left[] = {"Current (ma)", "Voltage (kVpp)",  "z (m/s)",
                                      "Voltage [mv]", "Voltage (kV DC)", "Voltage (V_rms)",
@@ -92,9 +80,8 @@ TEST(test_odd_units)
   for (size_t i = 0; i < sizeof left / sizeof left[0]; i++) {
     char text[100];
     snprintf(text, sizeof text, "Time (s),F (N),%s\n0,1,2\n1,2,3\n", left[i]);
-    assert_int_equal(record("odd.csv", text, odd, &recording), DEA_OK);
+    assert_int_equal(record("odd.csv", text, odd), DEA_OK);
     assert_int_equal(recording->channel_count, 1);
-    dea_recording_destroy(ctx, recording);
   }
   refused("odd.csv", "Time (mS),F (N)\n0,1\n1,2\n", NULL);
   assert_non_null(strstr(dea_context_message(ctx), "has no times"));
@@ -103,15 +90,13 @@ TEST(test_odd_units)
   for (size_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
     char text[100];
     snprintf(text, sizeof text, "Time (s),F (N),%s\n0,1,2\n1,2,3\n", taken[i]);
-    assert_int_equal(record("even.csv", text, "taken in V", &recording), DEA_OK);
+    assert_int_equal(record("even.csv", text, "taken in V"), DEA_OK);
     assert_int_equal(recording->channel_count, 2);
-    dea_recording_destroy(ctx, recording);
   }
-  assert_int_equal(record("minus.csv", "Time (s),F (N),V (kV)\n0,1,(2)\n1,2,(3)\n",
-                          "'V (kV)' holds text", &recording),
-                   DEA_OK);
+  assert_int_equal(
+      record("minus.csv", "Time (s),F (N),V (kV)\n0,1,(2)\n1,2,(3)\n", "'V (kV)' holds text"),
+      DEA_OK);
   assert_true(is_said(DEA_WARNING, "'V (kV)' holds text"));
-  dea_recording_destroy(ctx, recording);
 }
 
 /* What oscilloscopes write where a sample is beyond the screen. */
@@ -153,17 +138,16 @@ TEST(test_lvm_segments_of_other_channels)
 /* Each channel takes the times of its own struct, wherever they stand. */
 TEST(test_times_of_their_struct)
 {
-  struct dea_recording *r;
   assert_int_equal(record("two.csv",
                           "t (s),s.time (s),s.voltage (V),voltage (V)\n0,0,1,5\n1,0.5,2,6\n"
                           "2,1,3,7\n3,1.5,4,8\n",
-                          NULL, &r),
+                          NULL),
                    DEA_OK);
-  assert_int_equal(r->channel_count, 2);
+  assert_int_equal(recording->channel_count, 2);
   for (size_t c = 0; c < 2; c++) {
-    assert_close(r->channels[c].interval_s, r->channels[c].values[0] == 1 ? 0.5 : 1, 1e-12, 0);
+    assert_close(recording->channels[c].interval_s, recording->channels[c].values[0] == 1 ? 0.5 : 1,
+                 1e-12, 0);
   }
-  dea_recording_destroy(ctx, r);
 }
 
 TESTS(set_up, import_tear_down)

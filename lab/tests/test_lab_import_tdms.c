@@ -395,8 +395,7 @@ TEST(test_cuts)
   }
 }
 
-// Files of the size of a measurement, of all layouts
-// ------------------------------------------------
+// Files of the size of a measurement, of all layouts ----------------------------------------------
 
 enum { CHANNELS = 4, VALUES = 1536 };
 static const struct {

@@ -7,18 +7,18 @@
 #include <dlfcn.h>
 #include <stdlib.h>
 
-struct bench {
+static struct bench {
   struct fake_daq *fake;
   struct dea_protocol protocol;
   struct dea_protocol_input inputs[2];
   struct dea_instrument *instrument;
   struct emulator_sink sink;
-};
+} b;
 
 /* The fake's state from its beginning, and a protocol of 1 kHz with two inputs. */
-static void bench_begin(struct bench *b)
+static void bench_begin(void)
 {
-  memset(b, 0, sizeof *b);
+  memset(&b, 0, sizeof b);
   void *handle =
       dlopen("libnidaqmx.so.1", RTLD_NOW | RTLD_LOCAL); // the one that the instrument gets
   assert_non_null(handle);
@@ -26,83 +26,82 @@ static void bench_begin(struct bench *b)
   void *symbol = dlsym(handle, "fake_daq");
   assert_non_null(symbol);
   memcpy(&get, &symbol, sizeof get);
-  b->fake = get();
-  memset(b->fake, 0, sizeof *b->fake);
-  b->fake->level_V = 3; // of whoever was here before
-  b->sink.channels = 2;
-  b->protocol.rate_Hz.si = 1000;
-  b->protocol.amplifier.control_V.si = 10;
-  strcpy(b->protocol.amplifier.terminal.text, "ao1");
-  b->protocol.inputs = b->inputs;
-  b->protocol.input_count = 2;
-  strcpy(b->inputs[0].terminal.text, "ai0");
-  strcpy(b->inputs[1].terminal.text, "ai5");
-  b->inputs[0].range_V.si = 10;
-  b->inputs[1].range_V.si = 5;
+  b.fake = get();
+  memset(b.fake, 0, sizeof *b.fake);
+  b.fake->level_V = 3; // of whoever was here before
+  b.sink.channels = 2;
+  b.protocol.rate_Hz.si = 1000;
+  b.protocol.amplifier.control_V.si = 10;
+  strcpy(b.protocol.amplifier.terminal.text, "ao1");
+  b.protocol.inputs = b.inputs;
+  b.protocol.input_count = 2;
+  strcpy(b.inputs[0].terminal.text, "ai0");
+  strcpy(b.inputs[1].terminal.text, "ai5");
+  b.inputs[0].range_V.si = 10;
+  b.inputs[1].range_V.si = 5;
 }
 
 /* Plays a ramp of `count` samples in parts and compares what the inputs saw of it. */
-static void play(struct bench *b, size_t count)
+static void play(size_t count)
 {
-  const struct dea_instrument_type *type = b->instrument->type;
+  const struct dea_instrument_type *type = b.instrument->type;
   double volts[50];
   for (size_t i = 0; i < count; i += 50) {
     for (size_t k = 0; k < 50; k++) {
       volts[k] = 1e-3 * (double)(i + k) - 0.5;
     }
-    assert_int_equal(type->put(ctx, b->instrument, volts, 50), DEA_OK);
+    assert_int_equal(type->put(ctx, b.instrument, volts, 50), DEA_OK);
     if (i == 100) {
-      assert_int_equal(type->start(ctx, b->instrument), DEA_OK);
+      assert_int_equal(type->start(ctx, b.instrument), DEA_OK);
     }
-    assert_int_equal(emulator_get(ctx, b->instrument, &b->sink, 0, 0, i >= 100 ? i : 0), DEA_OK);
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 0, i >= 100 ? i : 0), DEA_OK);
   }
-  assert_int_equal(emulator_get(ctx, b->instrument, &b->sink, 0, 0, count), DEA_OK);
-  assert_int_equal(b->sink.samples, count);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 0, count), DEA_OK);
+  assert_int_equal(b.sink.samples, count);
   for (size_t i = 0; i < count; i++) {
     double wanted = 1e-3 * (double)i - 0.5;
-    assert_close(b->fake->played[i], wanted, 0, 1e-15);
-    assert_close(b->sink.volts[2 * i], wanted, 0, 2e-15);
-    assert_close(b->sink.volts[2 * i + 1], 2 * wanted, 0, 3e-15);
+    assert_close(b.fake->played[i], wanted, 0, 1e-15);
+    assert_close(b.sink.volts[2 * i], wanted, 0, 2e-15);
+    assert_close(b.sink.volts[2 * i + 1], 2 * wanted, 0, 3e-15);
   }
 }
 
 /* Beyond what amplifier and specimen may see nothing goes out, whatever is asked. */
-static void check_cap(struct bench *b)
+static void check_cap(void)
 {
   static const double beyond[][3] = {
       {0, 10.01, 0}, {0, 0, -10.01}, {NAN, 0, 0}, {0, INFINITY, 0}, {0, 6.01, 0}};
-  size_t written = b->fake->written;
+  size_t written = b.fake->written;
   for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
     if (i == 4) {
-      b->protocol.specimen.highest_V = (struct dea_quantity){6e3, DEA_GIVEN, {"", 0, 0}};
+      b.protocol.specimen.highest_V = (struct dea_quantity){6e3, DEA_GIVEN, {"", 0, 0}};
     }
-    assert_int_equal(b->instrument->type->put(ctx, b->instrument, beyond[i], 3), DEA_E_INTERLOCK);
+    assert_int_equal(b.instrument->type->put(ctx, b.instrument, beyond[i], 3), DEA_E_INTERLOCK);
     assert_non_null(strstr(dea_context_message(ctx), "was about to go out"));
   }
-  assert_int_equal(b->fake->written, written);
+  assert_int_equal(b.fake->written, written);
 }
 
-static void bench_end(struct bench *b)
+static void bench_end(void)
 {
-  if (b->instrument != NULL) {
-    emulator_close(ctx, b->instrument);
+  if (b.instrument != NULL) {
+    emulator_close(ctx, b.instrument);
   }
-  free(b->sink.volts);
-  assert_int_equal(b->fake->tasks, 0); // everything was given back
+  free(b.sink.volts);
+  assert_int_equal(b.fake->tasks, 0); // everything was given back
 }
 
-static dea_status begin(struct bench *b)
+static dea_status begin(void)
 {
   dea_finding_clear(ctx);
-  return emulator_open(ctx, &b->protocol, "kind: nidaqmx\ndevice: Dev2\nwiring: differential\n",
-                       &b->instrument);
+  return emulator_open(ctx, &b.protocol, "kind: nidaqmx\ndevice: Dev2\nwiring: differential\n",
+                       &b.instrument);
 }
 
 TEST(test_plays_and_measures)
 {
-  static struct bench b;
-  bench_begin(&b);
-  assert_int_equal(begin(&b), DEA_OK);
+  bench_begin();
+  assert_int_equal(begin(), DEA_OK);
   assert_int_equal(b.instrument->roles, DEA_PLAYS_OUTPUT | DEA_READS_INPUTS);
   assert_close(b.fake->level_V, 0, 0, 0); // once it is open
   // Output: at once 0 V, then on the clock and without repetition; inputs on its trigger.
@@ -116,7 +115,7 @@ TEST(test_plays_and_measures)
                                    "CfgSampClkTiming(1000 10280 10123)\n"
                                    "CfgDigEdgeStartTrig(/Dev2/ao/StartTrigger 10280)\n");
   b.fake->log[0] = '\0';
-  play(&b, 1000);
+  play(1000);
   const char *inputs = strstr(b.fake->log, "StartTask(inputs)");
   assert_non_null(inputs); // armed before the output starts
   assert_non_null(strstr(inputs, "StartTask(output)"));
@@ -126,35 +125,33 @@ TEST(test_plays_and_measures)
   assert_int_equal(b.fake->tasks, 0);
   b.instrument->type->close(ctx, b.instrument);
   b.instrument = NULL;
-  bench_end(&b);
+  bench_end();
 }
 
 TEST(test_starts_with_first_sample)
 {
-  static struct bench b;
   static const double volts[300] = {1};
-  bench_begin(&b);
-  assert_int_equal(begin(&b), DEA_OK);
+  bench_begin();
+  assert_int_equal(begin(), DEA_OK);
   assert_int_equal(b.instrument->type->start(ctx, b.instrument), DEA_OK);
   assert_int_equal(b.fake->running, 0);
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 300), DEA_OK);
   assert_int_equal(b.fake->running, 1);
   assert_int_equal(b.fake->written, 300);
-  check_cap(&b);
-  bench_end(&b);
-  bench_begin(&b); // and without start the queue is not endless
-  assert_int_equal(begin(&b), DEA_OK);
+  check_cap();
+  bench_end();
+  bench_begin(); // and without start the queue is not endless
+  assert_int_equal(begin(), DEA_OK);
   assert_message(b.instrument->type->put(ctx, b.instrument, volts, 300), DEA_E_ARGUMENT,
                  "more than 250 samples before the start");
-  bench_end(&b);
+  bench_end();
 }
 
 TEST(test_runs_dry)
 {
-  static struct bench b;
   double volts[100] = {0};
-  bench_begin(&b);
-  assert_int_equal(begin(&b), DEA_OK);
+  bench_begin();
+  assert_int_equal(begin(), DEA_OK);
   b.fake->dry_after = 100;
   assert_int_equal(b.instrument->type->start(ctx, b.instrument), DEA_OK);
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 100), DEA_OK);
@@ -166,7 +163,7 @@ TEST(test_runs_dry)
   // But one that was to go on has a gap.
   assert_message(b.instrument->type->put(ctx, b.instrument, volts, 1), DEA_E_INSTRUMENT,
                  "the computer was too slow");
-  bench_end(&b);
+  bench_end();
   assert_close(b.fake->level_V, 0, 0, 0);
 }
 
@@ -186,60 +183,54 @@ TEST(test_errors)
       {"CfgOutputBuffer", "cannot take a queue of that length", -1},
       {"CfgDigEdgeStartTrig", "cannot start its inputs with its output", -1},
   };
-  static struct bench b;
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    bench_begin(&b);
+    bench_begin();
     strcpy(b.fake->fails, cases[i].function);
     b.fake->code = cases[i].code;
     bool unknown = strcmp(cases[i].function, "WriteNow") == 0;
-    assert_message(begin(&b), unknown ? DEA_E_INTERLOCK : DEA_E_INSTRUMENT, cases[i].message);
+    assert_message(begin(), unknown ? DEA_E_INTERLOCK : DEA_E_INSTRUMENT, cases[i].message);
     assert_true(!unknown ||
                 strstr(dea_context_message(ctx), "not known to be at 0 V: switch it off") != NULL);
-    bench_end(&b);
+    bench_end();
   }
   static const char *const later[] = {"StartTask", "Write", "Avail", "Read"};
   for (size_t i = 0; i < 4; i++) {
     static const double volts[50] = {1};
     const struct dea_sink to = {&b.sink, emulator_samples, NULL, NULL};
-    bench_begin(&b);
-    assert_int_equal(begin(&b), DEA_OK);
+    bench_begin();
+    assert_int_equal(begin(), DEA_OK);
     strcpy(b.fake->fails, later[i]);
     b.fake->code = -201003; // the device is gone
     dea_status status = b.instrument->type->put(ctx, b.instrument, volts, 50);
     status = status == DEA_OK ? b.instrument->type->start(ctx, b.instrument) : status;
     status = status == DEA_OK ? b.instrument->type->get(ctx, b.instrument, 0.01, &to) : status;
     assert_message(status, DEA_E_INSTRUMENT, "NI-DAQmx -201003");
-    bench_end(&b);
+    bench_end();
     assert_close(b.fake->level_V, 0, 0, 0); // stopped at 0 V all the same
   }
 }
 
 TEST(test_rate)
 {
-  static struct bench b;
-  bench_begin(&b);
+  bench_begin();
   b.fake->rate_factor = 1.0001;
-  assert_message(begin(&b), DEA_E_INSTRUMENT,
-                 "Dev2 has no rate of 1000 Hz; write 'rate: 1000.1 Hz'");
-  bench_end(&b);
+  assert_message(begin(), DEA_E_INSTRUMENT, "Dev2 has no rate of 1000 Hz; write 'rate: 1000.1 Hz'");
+  bench_end();
 }
-
-static struct bench memory_bench;
 
 static void open_and_close(struct dea_context *context)
 {
-  struct bench *b = &memory_bench;
-  dea_status status = emulator_open(context, &b->protocol, "kind: nidaqmx\n", &b->instrument);
+  dea_status status = emulator_open(context, &b.protocol, "kind: nidaqmx\n", &b.instrument);
   failing_check(context, status);
   if (status == DEA_OK) {
-    emulator_close(context, b->instrument);
+    emulator_close(context, b.instrument);
   }
-  assert_int_equal(b->fake->tasks, 0);
+  assert_int_equal(b.fake->tasks, 0);
 }
 
 TEST(test_memory)
 {
-  bench_begin(&memory_bench);
+  bench_begin();
   assert_true(failing_each(open_and_close) > 3);
 }
 

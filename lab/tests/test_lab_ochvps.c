@@ -22,13 +22,11 @@ static void answer(struct supply *s, const char *command, char out[SUPPLY_ANSWER
   }
 }
 
-static void begin(struct supply *s, const char *connect)
+static void begin(const char *connect)
 {
   char text[2048];
-  s->answer = answer;
-  s->error = "unknown command";
-  s->buffer = 60;
-  supply_start(s);
+  hv = (struct supply){.answer = answer, .error = "unknown command", .buffer = 60};
+  supply_start(&hv);
   snprintf(text, sizeof text,
            "dea-protocol: 1\n"
            "waveform: {kind: square, high: 2 kV, rise_time: 1 s, cycles: 2, frequency: 0.25 Hz}\n"
@@ -38,26 +36,24 @@ static void begin(struct supply *s, const char *connect)
            "instruments:\n"
            "  - {kind: ochvps, device: %s, connect: [\"%s\"], channel: supply, queue: 1 s,\n"
            "     behind: 1.5 s, timeout: 3 s}\n",
-           supply_zero_V, s->device, connect);
+           supply_zero_V, hv.device, connect);
   command_write("p.yaml", text);
 }
 
 TEST(test_plays)
 {
-  static struct supply s;
-  s = (struct supply){0};
-  begin(&s, "SM1 1 255 1 100 0 0 0");
+  begin("SM1 1 255 1 100 0 0 0");
   pid_t child = supply_arm_checked("o.h5");
-  bool reached = supply_reaches(&s, 1900, 10);
-  int mode = s.mode, code = supply_wait(child, 30);
+  bool reached = supply_reaches(&hv, 1900, 10);
+  int mode = hv.mode, code = supply_wait(child, 30);
   if (code != 0 || !reached) {
     fail_msg("%d\n%s%s", code, command_out, command_err);
   }
   assert_int_equal(mode, 1);
-  assert_true(supply_said_zero() && s.mode == 0 && s.overflows == 0 && s.hurried == 0);
-  double highest_V = supply_highest(&s);
+  assert_true(supply_said_zero() && hv.mode == 0 && hv.overflows == 0 && hv.hurried == 0);
+  double highest_V = supply_highest(&hv);
   assert_true(highest_V > 1900 && highest_V <= 2000);
-  supply_stop(&s);
+  supply_stop(&hv);
 }
 
 TEST(test_faults)
@@ -69,38 +65,33 @@ TEST(test_faults)
                {SUPPLY_GARBLES, "which"},
                {SUPPLY_ERRS, "answered 'unknown command'"},
                {SUPPLY_HANGS_UP, "the connection to the OCHVPS"}};
-  static struct supply s;
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    s = (struct supply){0};
-    begin(&s, "SM1 1 255 1 100 0 0 0");
+    begin("SM1 1 255 1 100 0 0 0");
     pid_t child = supply_arm_checked("o.h5");
-    assert_true(supply_reaches(&s, 1000, 10));
-    atomic_store(&s.fault, cases[i].fault);
+    assert_true(supply_reaches(&hv, 1000, 10));
+    atomic_store(&hv.fault, cases[i].fault);
     assert_int_equal(supply_wait(child, 20), 6);
     assert_false(supply_said_zero());
     assert_contains(command_err, cases[i].message);
-    supply_stop(&s);
+    supply_stop(&hv);
   }
 }
 
 TEST(test_refused)
 {
   static const char *const wrong[] = {"SHV 3000", "SM1 1 255\\rSHV 3000", "EStop"};
-  static struct supply s;
   for (size_t i = 0; i < 3; i++) {
-    s = (struct supply){0};
-    begin(&s, wrong[i]);
+    begin(wrong[i]);
     assert_int_equal(supply_run_dea("drive p.yaml", 20), 3);
     assert_contains(command_err, i == 1 ? "control character" : "that connect channels");
-    assert_true(supply_highest(&s) == 0);
-    supply_stop(&s);
+    assert_true(supply_highest(&hv) == 0);
+    supply_stop(&hv);
   }
-  s = (struct supply){0}; // a command that it does not know
-  begin(&s, "SMA");
+  begin("SMA"); // a command that it does not know
   assert_int_equal(supply_wait(supply_arm_checked("o.h5"), 20), 6);
   assert_contains(command_err, "answered 'unknown command' to 'SMA', which is an error");
-  assert_true(supply_highest(&s) == 0);
-  supply_stop(&s);
+  assert_true(supply_highest(&hv) == 0);
+  supply_stop(&hv);
 }
 
 TESTS(command_set_up, supply_tear_down)

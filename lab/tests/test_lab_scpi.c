@@ -99,32 +99,37 @@ static const struct behaviour usual = {
 static const char reads[] = READS("5 s");
 static const char hasty[] = READS("0.15 s");
 
-struct bench {
+/* Of one instrument; protocol and fragment are set before it begins. */
+static struct bench {
   struct emulator emulator;
   struct behaviour behaviour;
   struct dea_protocol protocol;
   struct dea_instrument *instrument;
   struct emulator_sink sink;
   char text[2048];
-};
+} b;
 
-static dea_status begin(struct bench *b, const struct behaviour *behaviour, const char *section)
+static dea_status begin(const struct behaviour *behaviour, const char *section)
 {
-  b->behaviour = *behaviour;
-  emulator_start(&b->emulator, serve, &b->behaviour);
-  snprintf(b->text, sizeof b->text, section, b->emulator.port);
+  b.behaviour = *behaviour;
+  b.sink = (struct emulator_sink){0};
+  emulator_start(&b.emulator, serve, &b.behaviour);
+  snprintf(b.text, sizeof b.text, section, b.emulator.port);
   dea_finding_clear(ctx);
-  dea_status status = emulator_open(ctx, &b->protocol, b->text, &b->instrument);
-  status = status == DEA_OK ? b->instrument->type->start(ctx, b->instrument) : status;
+  dea_status status = emulator_open(ctx, &b.protocol, b.text, &b.instrument);
+  status = status == DEA_OK ? b.instrument->type->start(ctx, b.instrument) : status;
   return status;
 }
 
-static void end(struct bench *b)
+static void end(void)
 {
-  if (b->instrument != NULL) {
-    emulator_close(ctx, b->instrument);
+  if (b.instrument != NULL) {
+    emulator_close(ctx, b.instrument);
   }
-  emulator_stop(&b->emulator);
+  emulator_stop(&b.emulator);
+  b.instrument = NULL;
+  b.protocol = (struct dea_protocol){0};
+  b.emulator.fragment = 0;
 }
 
 TEST(test_numbers)
@@ -250,12 +255,10 @@ TEST(test_voltages_and_errors)
 
 TEST(test_reads)
 {
-  static struct bench b;
   static const size_t fragments[] = {0, 1, 2, 5};
   for (size_t f = 0; f < sizeof fragments / sizeof fragments[0]; f++) {
-    memset(&b, 0, sizeof b);
     b.emulator.fragment = fragments[f];
-    assert_int_equal(begin(&b, &usual, reads), DEA_OK);
+    assert_int_equal(begin(&usual, reads), DEA_OK);
     assert_int_equal(b.instrument->roles, DEA_GIVES_READINGS);
     assert_int_equal(b.instrument->reading_count, 2);
     assert_string_equal(b.instrument->readings[1].name, "load");
@@ -272,7 +275,7 @@ TEST(test_reads)
     assert_true(b.sink.reading[6].time_s - b.sink.reading[0].time_s > 0.01);
     assert_int_equal(b.instrument->lost, 0);
     emulator_check_clock(ctx, b.instrument, &b.sink);
-    end(&b);
+    end();
     assert_true(strncmp(b.emulator.log, "*IDN?\n*CLS\nFUNC 'CURR'\nZCOR ON\nSYST:ERR?\n", 40) == 0);
     assert_string_equal(strstr(b.emulator.log, "OUTP OFF"), "OUTP OFF\nSYST:LOC\n");
   }
@@ -283,7 +286,6 @@ TEST(test_plays)
   static const char plays[] =
       "kind: scpi\naddress: 127.0.0.1\nport: %d\ntimeout: 5 s\n"
       "output: \"SOUR:VOLT %%g\"\noutput_factor: 2\noutput_interval: 40 ms\nqueue: 0.2 s\n";
-  static struct bench b;
   const double beyond[][2] = {{0, 5.01}, {-1.51, 0}, {0, NAN}, {INFINITY, 0}, {0, -1e300}};
   double volts[60];
   b.protocol.rate_Hz.si = 100;      // slow enough for a machine that is busy
@@ -292,7 +294,7 @@ TEST(test_plays)
   b.protocol.amplifier.highest_V.si = 10;
   b.protocol.amplifier.lowest_V.si = -3;
   b.protocol.safety.zero_time_s.si = 2;
-  assert_int_equal(begin(&b, &usual, plays), DEA_OK);
+  assert_int_equal(begin(&usual, plays), DEA_OK);
   assert_int_equal(b.instrument->roles, DEA_PLAYS_OUTPUT);
   for (size_t i = 0; i < 60; i++) {
     volts[i] = i < 30 ? 0.125 * (double)(i / 10) : -1.5;
@@ -307,7 +309,7 @@ TEST(test_plays)
     assert_message(b.instrument->type->put(ctx, b.instrument, beyond[i], 2), DEA_E_INTERLOCK,
                    "was about to go out");
   }
-  end(&b);
+  end();
   const char *log = strstr(b.emulator.log, "SOUR:VOLT 0\n");
   assert_non_null(log);
   assert_string_equal(log, "SOUR:VOLT 0\n*CLS\nSOUR:VOLT 0\n*OPC?\nSYST:ERR?\n"
@@ -317,22 +319,20 @@ TEST(test_plays)
 
 TEST(test_makes_no_sense)
 {
-  static struct bench b;
   static char long_line[5000];
   memset(long_line, 'x', sizeof long_line - 1);
   static const char *const answers[] = {"nothing", "\x01\x02", long_line};
   for (size_t i = 0; i < 3; i++) {
     struct behaviour behaviour = usual;
-    memset(&b, 0, sizeof b);
     behaviour.current = answers[i];
     behaviour.then = "7";
-    assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+    assert_int_equal(begin(&behaviour, reads), DEA_OK);
     assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 3, 0, 0), DEA_OK);
     assert_true(isnan(b.sink.reading[0].value)); // lost, and the next is good again
     assert_close(b.sink.reading[1].value, 1.25, 1e-12, 0);
     assert_close(b.sink.reading[2].value, 7, 1e-12, 0);
     assert_int_equal(b.instrument->lost, 1);
-    end(&b);
+    end();
   }
 }
 
@@ -345,7 +345,6 @@ TEST(test_makes_no_sense)
  * end, the value is left out. */
 TEST(test_units_and_fields)
 {
-  static struct bench b;
   static const char amps[] = READS_CURRENT(", quantity: current"),
                     second[] = READS_CURRENT(", quantity: current, field: 2"),
                     volts[] = READS_CURRENT(", quantity: voltage, field: 1"),
@@ -386,10 +385,9 @@ TEST(test_units_and_fields)
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     struct behaviour behaviour = usual;
-    memset(&b, 0, sizeof b);
     behaviour.current = cases[i].first;
     behaviour.then = cases[i].then;
-    assert_int_equal(begin(&b, &behaviour, cases[i].section), DEA_OK);
+    assert_int_equal(begin(&behaviour, cases[i].section), DEA_OK);
     dea_status status = emulator_get(ctx, b.instrument, &b.sink, 2, 0, 0);
     if (cases[i].refused != NULL) {
       assert_message(status, DEA_E_INSTRUMENT, cases[i].refused);
@@ -408,7 +406,7 @@ TEST(test_units_and_fields)
       assert_int_equal(dea_finding_count(ctx, DEA_WARNING), left);
       assert_int_equal(b.instrument->lost > 0, left);
     }
-    end(&b);
+    end();
   }
   char suffix[DEA_SCPI_SUFFIX_SIZE];
   dea_scpi_suffix(" +1.5E-3 m N ,7 V", 1, suffix);
@@ -422,14 +420,12 @@ TEST(test_units_and_fields)
 /* More lines than one were asked for: none of them is taken, in whatever pieces they come. */
 TEST(test_speaks_unasked)
 {
-  static struct bench b;
   static const char *const answers[] = {"1\r\n2\r\n\r\n3", "0\r2000"};
   struct behaviour behaviour = usual;
   for (size_t i = 0; i < 8; i++) {
-    memset(&b, 0, sizeof b);
     behaviour.current = answers[i % 2];
     b.emulator.fragment = i / 2;
-    assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+    assert_int_equal(begin(&behaviour, reads), DEA_OK);
     dea_status status = emulator_get(ctx, b.instrument, &b.sink, 30, 0, 0);
     assert_int_equal(status, DEA_E_INSTRUMENT);
     if (b.emulator.fragment == 0) { // both at once
@@ -437,45 +433,38 @@ TEST(test_speaks_unasked)
       assert_int_equal(b.sink.readings, 0);
     }
     assert_true(b.sink.readings < 5);
-    end(&b);
+    end();
   }
 }
 
 TEST(test_goes_silent)
 {
-  static struct bench b;
   struct behaviour behaviour = usual;
   behaviour.current = NULL;
-  memset(&b, 0, sizeof b);
-  assert_int_equal(begin(&b, &behaviour, hasty), DEA_OK);
+  assert_int_equal(begin(&behaviour, hasty), DEA_OK);
   dea_status status = emulator_get(ctx, b.instrument, &b.sink, 1, 0, 0);
   assert_message(status, DEA_E_INSTRUMENT, "did not answer 'MEAS:CURR?' within 0.15 s");
-  end(&b);
-  memset(&b, 0, sizeof b);
+  end();
   behaviour.identity = NULL;
-  assert_message(begin(&b, &behaviour, hasty), DEA_E_INSTRUMENT, "did not answer '*IDN?'");
-  end(&b);
+  assert_message(begin(&behaviour, hasty), DEA_E_INSTRUMENT, "did not answer '*IDN?'");
+  end();
 }
 
 TEST(test_hangs_up)
 {
-  static struct bench b;
   struct behaviour behaviour = usual;
   for (size_t n = 1; n <= strlen(usual.current); n++) {
-    memset(&b, 0, sizeof b);
     behaviour.current_length = n;
-    assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+    assert_int_equal(begin(&behaviour, reads), DEA_OK);
     dea_status status = emulator_get(ctx, b.instrument, &b.sink, 1, 0, 0);
     assert_message(status, DEA_E_INSTRUMENT, "the connection to the instrument at 127.0.0.1");
     assert_int_equal(b.sink.readings, 0); // half a number is none
-    end(&b);                              // writes to it twice, without SIGPIPE
+    end();                                // writes to it twice, without SIGPIPE
   }
 }
 
 TEST(test_not_there)
 {
-  static struct bench b;
-  memset(&b, 0, sizeof b);
   snprintf(b.text, sizeof b.text, reads, emulator_no_port());
   assert_message(emulator_open(ctx, &b.protocol, b.text, &b.instrument), DEA_E_INSTRUMENT,
                  "Connection refused");
@@ -487,24 +476,20 @@ TEST(test_not_there)
 
 TEST(test_refuses)
 {
-  static struct bench b;
   struct behaviour behaviour = usual;
-  memset(&b, 0, sizeof b);
   behaviour.identity = "OTHER,Scope,1,2";
-  assert_message(begin(&b, &behaviour, reads), DEA_E_INSTRUMENT,
+  assert_message(begin(&behaviour, reads), DEA_E_INSTRUMENT,
                  "is a 'OTHER,Scope,1,2', not a 'Electrometer'");
-  end(&b);
-  memset(&b, 0, sizeof b);
+  end();
   behaviour = usual;
   behaviour.error = "-113,\"Undefined header\"";
-  assert_message(begin(&b, &behaviour, reads), DEA_E_INSTRUMENT,
+  assert_message(begin(&behaviour, reads), DEA_E_INSTRUMENT,
                  "does not accept its setup: error -113, \"Undefined header\"");
-  end(&b);
-  memset(&b, 0, sizeof b);
+  end();
   behaviour.error = NULL; // knows no SYST:ERR?
-  assert_int_equal(begin(&b, &behaviour, hasty), DEA_OK);
+  assert_int_equal(begin(&behaviour, hasty), DEA_OK);
   assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
-  end(&b);
+  end();
 }
 
 TEST(test_wrong_keys)
@@ -591,9 +576,7 @@ TEST(test_harmless_commands)
 TEST(test_computer_that_slept)
 {
   static const char plays[] = "kind: scpi\naddress: 127.0.0.1\nport: %d\noutput: VOLT %%g\n";
-  static struct bench b;
   double volts[20] = {0}, held_V = NAN;
-  memset(&b, 0, sizeof b);
   b.protocol.rate_Hz.si = 100;
   b.protocol.safety.zero_time_s.si = 2;
   b.protocol.amplifier.control_V.si = 10;
@@ -602,7 +585,7 @@ TEST(test_computer_that_slept)
   for (size_t i = 0; i < 20; i++) {
     volts[i] = 0.5 * (double)i;
   }
-  assert_int_equal(begin(&b, &usual, plays), DEA_OK);
+  assert_int_equal(begin(&usual, plays), DEA_OK);
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 20), DEA_OK);
   atomic_store(&slept_s, 3600);
   const struct dea_sink nothing = {0};
@@ -610,7 +593,7 @@ TEST(test_computer_that_slept)
                  "the computer was away for 3.6e+03 s, longer than the queue");
   assert_int_equal(b.instrument->type->hold(ctx, b.instrument, &held_V), DEA_OK);
   assert_true(held_V < 9);
-  end(&b);
+  end();
 }
 
 /* A supply that took nothing for 0.4 s, while the program waited for it: what became due meanwhile
@@ -805,14 +788,12 @@ TEST(test_generator)
       "ON\"]\n"
       "output: \"C1:BSWV OFST,%%g\"\noutput_off: \"C1:OUTP OFF\"\nbehind: 5 s\nqueue: 5 s\n";
   static const double volts[] = {0, 2.5, 2.5, 0};
-  static struct bench b;
   struct behaviour behaviour = usual;
   struct emulator_sink sink = {0};
-  memset(&b, 0, sizeof b);
   b.protocol.rate_Hz.si = 20;
   b.protocol.safety.zero_time_s.si = 2;
   behaviour.identity = "Siglent Technologies,SDG2042X,1,2";
-  assert_int_equal(begin(&b, &behaviour, generator), DEA_OK);
+  assert_int_equal(begin(&behaviour, generator), DEA_OK);
   assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 4), DEA_OK);
   const struct dea_sink to = {&sink, emulator_samples, emulator_profile, emulator_reading};
   for (double until_s = dea_clock_s() + 0.5; dea_clock_s() < until_s;) {
@@ -820,7 +801,7 @@ TEST(test_generator)
   }
   emulator_close(ctx, b.instrument);
   b.instrument = NULL;
-  end(&b);
+  end();
   static const char *const order[] = {"C1:BSWV OFST,0\n",
                                       "C1:BSWV WVTP,DC,OFST,0\nC1:BTWV STPS,270\n",
                                       "C1:OUTP ON\n",
@@ -838,13 +819,11 @@ TEST(test_generator)
   }
 }
 
-static struct bench memory_bench;
-
 static void work(struct dea_context *context)
 {
   struct dea_instrument *instrument;
   struct dea_protocol protocol = {.rate_Hz.si = 100, .safety.zero_time_s.si = 2};
-  dea_status status = emulator_open(context, &protocol, memory_bench.text, &instrument);
+  dea_status status = emulator_open(context, &protocol, b.text, &instrument);
   failing_check(context, status);
   if (status == DEA_OK) {
     emulator_close(context, instrument);
@@ -856,7 +835,6 @@ static void work(struct dea_context *context)
  * One of which that is kept is found by it, and by its name where it is an old one. */
 TEST(test_name_that_nobody_knows)
 {
-  static struct bench b;
   static const char plays[] =
       "kind: scpi\naddress: localhost\nport: %d\ntimeout: 5 s\noutput: \"SOUR:VOLT %%g\"\n"
       "behind: 0.1 s\nmeasure: \"MEAS:CURR?\"\n";
@@ -869,7 +847,7 @@ TEST(test_name_that_nobody_knows)
   b.protocol.safety.voltage_error_V.si = 200;
   b.protocol.safety.readback_error.si = 0.05;
   b.protocol.safety.zero_time_s.si = 10;
-  assert_int_equal(begin(&b, &behaviour, plays), DEA_OK);
+  assert_int_equal(begin(&behaviour, plays), DEA_OK);
   char host[DEA_INSTRUMENT_HOST_SIZE];
   memcpy(host, b.instrument->host, sizeof host);
   atomic_store(&no_names, true);
@@ -899,18 +877,17 @@ TEST(test_name_that_nobody_knows)
                    DEA_OK);
   assert_int_equal(zero.state, DEA_ZERO_READ_BACK);
   dea_yaml_destroy(ctx, yaml);
-  end(&b);
+  end();
 }
 
 TEST(test_memory)
 {
-  struct bench *b = &memory_bench;
-  b->behaviour = usual;
-  emulator_start(&b->emulator, serve, &b->behaviour);
-  int length = snprintf(b->text, sizeof b->text, reads, b->emulator.port);
-  snprintf(b->text + length, sizeof b->text - (size_t)length, "output: VOLT %%g\n");
+  b.behaviour = usual;
+  emulator_start(&b.emulator, serve, &b.behaviour);
+  int length = snprintf(b.text, sizeof b.text, reads, b.emulator.port);
+  snprintf(b.text + length, sizeof b.text - (size_t)length, "output: VOLT %%g\n");
   assert_true(failing_each(work) > 3);
-  emulator_stop(&b->emulator);
+  emulator_stop(&b.emulator);
 }
 
 TESTS(context_set_up, context_tear_down)

@@ -109,19 +109,21 @@ static void bench_protocol(const char *text)
   }
 }
 
-static void played(size_t block, struct record *r)
+static struct record r; // that was played last
+
+static void played(size_t block)
 {
-  if (play(ctx, p, block, r) != DEA_OK) {
+  free_record(&r);
+  if (play(ctx, p, block, &r) != DEA_OK) {
     print_findings(ctx);
     fail_msg("%s", dea_context_message(ctx));
   }
 }
 
 /* Value of an input at a sample, as the protocol says. */
-static double value(const struct record *r, size_t sample, size_t input)
+static double value(size_t sample, size_t input)
 {
-  return r->volts[sample * r->inputs + input] * p->inputs[input].per_volt +
-         p->inputs[input].at_zero;
+  return r.volts[sample * r.inputs + input] * p->inputs[input].per_volt + p->inputs[input].at_zero;
 }
 
 /* Half a step of the converter, in the quantity. */
@@ -172,25 +174,23 @@ static struct dea_load_point point_at(const struct dea_curve *curve, double time
 TEST(test_truth_is_the_model)
 {
   bench_protocol(HEAD IDEAL "waveform: " WAVE "\nsim: {" QUIET ", profile_points: 0}\n");
-  struct record r;
-  played(100, &r);
+  played(100);
   assert_int_equal(r.samples, 600);
   struct study model;
   study(&model);
   double charge_C = 0;
   for (size_t i = 0; i < r.samples; i++) {
     const struct dea_load_point point = point_at(model.curve, (double)i / 1000);
-    charge_C += value(&r, i, 1) * 1e-3;
-    assert_close(value(&r, i, 0), point.voltage_V, 0, half_step(0) * 1.001);
-    assert_close(value(&r, i, 2), point.centre_z_m, 5e-6, half_step(2) * 1.001);
-    assert_close(value(&r, i, 3), point.force_N, 2e-5, half_step(3) * 1.001);
+    charge_C += value(i, 1) * 1e-3;
+    assert_close(value(i, 0), point.voltage_V, 0, half_step(0) * 1.001);
+    assert_close(value(i, 2), point.centre_z_m, 5e-6, half_step(2) * 1.001);
+    assert_close(value(i, 3), point.force_N, 2e-5, half_step(3) * 1.001);
     assert_close(charge_C, point.charge_C, 1e-5, (double)(i + 1) * half_step(1) * 1e-3);
   }
   assert_true(point_at(model.curve, 0.05).centre_z_m > 1e-3); // it did move
   dea_result_destroy(ctx, model.result);
   dea_device_destroy(ctx, model.device);
   dea_design_destroy(ctx, model.design);
-  free_record(&r);
 }
 
 /* What is true at the first samples of a protocol: a bench of its own plays it. */
@@ -211,14 +211,13 @@ static void play_truth(size_t count, struct dea_sim_state *truth)
 }
 
 /* Mean and standard deviation of what an input says beyond the truth. */
-static void statistics(const struct record *r, const struct dea_sim_state *truth, size_t input,
-                       double out[2])
+static void statistics(const struct dea_sim_state *truth, size_t input, double out[2])
 {
-  double sum = 0, square = 0, n = (double)r->samples;
-  for (size_t i = 0; i < r->samples; i++) {
+  double sum = 0, square = 0, n = (double)r.samples;
+  for (size_t i = 0; i < r.samples; i++) {
     const double due[4] = {truth[i].output_V, truth[i].current_A, truth[i].centre_z_m,
                            truth[i].force_N};
-    double error = value(r, i, input) - due[input];
+    double error = value(i, input) - due[input];
     sum += error;
     square += error * error;
   }
@@ -236,8 +235,7 @@ TEST(test_noise_is_what_was_asked)
                             "displacement_noise: 5 um, force_noise: 1 mN, profile_noise: 3 um, "
                             "outliers: 2 %, missing: 3 %, tilt: 0.5 degree, profile_points: 200, "
                             "frame_rate: 10 Hz, displacement_drift: 1 um/s, force_offset: 3 mN}\n");
-  struct record r;
-  played(1000, &r);
+  played(1000);
   size_t n = r.samples;
   assert_int_equal(n, 10000);
   struct dea_sim_state *truth = malloc(n * sizeof *truth);
@@ -246,7 +244,7 @@ TEST(test_noise_is_what_was_asked)
   for (size_t k = 0; k < 4; k++) {
     double found[2], step = 2 * half_step(k), drift = k == 2 ? 10e-6 / sqrt(12) : 0;
     double due = sqrt(sigma[k] * sigma[k] + step * step / 12 + drift * drift);
-    statistics(&r, truth, k, found);
+    statistics(truth, k, found);
     assert_close(found[1], due, 0.03, 0); // of 10000 samples: 0.7 % is one sigma
     double mean = k == 2 ? 5e-6 : k == 3 ? 3e-3 : 0;
     assert_close(found[0], mean, 0, 4 * sigma[k] / 100);
@@ -277,7 +275,6 @@ TEST(test_noise_is_what_was_asked)
   assert_close((double)missing / (double)(frames * r.points), 0.03, 0.1, 0);
   assert_close((double)outliers / (double)(frames * r.points), 0.02 * 0.97, 0.15, 0);
   free(truth);
-  free_record(&r);
 }
 
 /* One seed gives one recording, however it is read; another seed another one. */
@@ -287,23 +284,24 @@ TEST(test_seeds)
                                        HEAD IDEAL "waveform: " WAVE "\nsim: {seed: 7, lost: 5 %}\n",
                                        HEAD IDEAL "waveform: " WAVE
                                                   "\nsim: {seed: 8, lost: 5 %}\n"};
-  struct record r[3];
+  struct record all[3];
   for (int k = 0; k < 3; k++) {
     bench_protocol(texts[k]);
-    played(k == 1 ? 37 : 600, &r[k]);
+    assert_int_equal(play(ctx, p, k == 1 ? 37 : 600, &all[k]), DEA_OK);
   }
   size_t lost = 0, same = 0;
-  assert_true(r[0].samples == 600 && r[1].samples == 600);
-  assert_int_equal(memcmp(r[0].volts, r[1].volts, 600 * 4 * sizeof(double)), 0);
-  assert_int_equal(memcmp(r[0].z_m, r[1].z_m, r[0].frames * r[0].points * sizeof(double)), 0);
+  assert_true(all[0].samples == 600 && all[1].samples == 600);
+  assert_int_equal(memcmp(all[0].volts, all[1].volts, 600 * 4 * sizeof(double)), 0);
+  assert_int_equal(memcmp(all[0].z_m, all[1].z_m, all[0].frames * all[0].points * sizeof(double)),
+                   0);
   for (size_t i = 0; i < 600; i++) {
-    lost += isnan(r[0].volts[4 * i]) ? 1U : 0U;
-    same += r[0].volts[4 * i + 2] == r[2].volts[4 * i + 2] ? 1U : 0U;
+    lost += isnan(all[0].volts[4 * i]) ? 1U : 0U;
+    same += all[0].volts[4 * i + 2] == all[2].volts[4 * i + 2] ? 1U : 0U;
   }
-  assert_int_equal(lost, r[0].lost);
+  assert_int_equal(lost, all[0].lost);
   assert_true(lost > 10 && lost < 60 && same < 60);
   for (int k = 0; k < 3; k++) {
-    free_record(&r[k]);
+    free_record(&all[k]);
   }
 }
 
@@ -314,27 +312,24 @@ TEST(test_limits)
                  "amplifier: {gain: 1000, max_voltage: 10 kV, slew_limit: 1 V/us}\nrate: 100 kHz\n"
                  "waveform: {kind: constant, voltage: 4 kV, duration: 6 ms}\n"
                  "sim: {" QUIET ", profile_points: 0}\n");
-  struct record r;
-  played(600, &r);
+  played(600);
   for (size_t i = 0; i < r.samples; i++) { // 10 us a sample: 10 V
-    assert_close(value(&r, i, 0), fmin(10 * (double)i, 4000), 0, 2 * half_step(0));
+    assert_close(value(i, 0), fmin(10 * (double)i, 4000), 0, 2 * half_step(0));
   }
-  free_record(&r);
   bench_protocol(
       HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 20 uA}\nrate: 100 kHz\n"
            "waveform: {kind: constant, voltage: 4 kV, duration: 12 ms}\n"
            "sim: {" QUIET ", profile_points: 0}\n");
-  played(1200, &r);
+  played(1200);
   double charge_C = 0;
   for (size_t i = 0; i < r.samples; i++) {
-    charge_C += value(&r, i, 1) * 1e-5;
-    assert_true(value(&r, i, 1) <= 20e-6 + 2 * half_step(1));
-    assert_true(value(&r, i, 0) <= 4000 + half_step(0));
+    charge_C += value(i, 1) * 1e-5;
+    assert_true(value(i, 1) <= 20e-6 + 2 * half_step(1));
+    assert_true(value(i, 0) <= 4000 + half_step(0));
   }
   // some 30 pF at 4 kV: 0.13 uC, which 20 uA bring in 6 ms
-  assert_true(value(&r, 300, 0) < 3900 && value(&r, r.samples - 1, 0) > 3990);
+  assert_true(value(300, 0) < 3900 && value(r.samples - 1, 0) > 3990);
   assert_close(charge_C, 32.5e-12 * 4000, 0.03, 0);
-  free_record(&r);
 }
 
 /* From its breakdown voltage on the film is a short circuit; discharges bring their charge. */
@@ -343,22 +338,19 @@ TEST(test_breakdown_and_discharges)
   bench_protocol(HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 5 mA}\n"
                       "waveform: {kind: ramp, to: 5 kV, duration: 1 s}\n"
                       "sim: {" QUIET ", breakdown_voltage: 3 kV, profile_points: 0}\n");
-  struct record r;
-  played(1000, &r);
-  assert_true(value(&r, 590, 0) > 2900 && value(&r, 590, 1) < 1e-6);
-  assert_true(value(&r, 610, 0) < 100 && value(&r, 610, 1) > 4.9e-3);
-  assert_close(value(&r, 999, 2), 0, 0, half_step(2) * 1.01);
-  free_record(&r);
+  played(1000);
+  assert_true(value(590, 0) > 2900 && value(590, 1) < 1e-6);
+  assert_true(value(610, 0) < 100 && value(610, 1) > 4.9e-3);
+  assert_close(value(999, 2), 0, 0, half_step(2) * 1.01);
   bench_protocol(HEAD IDEAL "waveform: " LONG_WAVE "\nsim: {" QUIET
                             ", discharge_rate: 10 Hz, discharge_voltage: 2 kV, "
                             "discharge_charge: 40 nC, profile_points: 0}\n");
-  played(1000, &r);
+  played(1000);
   size_t spikes = 0;
   for (size_t i = 10; i < r.samples; i++) {
-    spikes += value(&r, i, 1) > 35e-6 ? 1U : 0U;
+    spikes += value(i, 1) > 35e-6 ? 1U : 0U;
   }
   assert_true(spikes > 70 && spikes < 130); // 100 in 10 s
-  free_record(&r);
 }
 
 /* Some minutes of a life test by ten samples a second: each is a jump of 50 V, which the
@@ -374,14 +366,12 @@ TEST(test_slow_wave)
   static const char *const lives[] = {LIFE(""), LIFE(", breakdown_time: 200 s")};
   for (int k = 0; k < 2; k++) {
     bench_protocol(lives[k]);
-    struct record r;
     size_t whole = 0;
-    played(1000, &r);
-    while (whole < r.samples && value(&r, whole, 1) < 1e-4) {
+    played(1000);
+    while (whole < r.samples && value(whole, 1) < 1e-4) {
       whole++;
     }
     assert_true(k == 0 ? whole == 6000 : whole > 2000 && whole < 2050);
-    free_record(&r);
   }
 }
 
@@ -391,23 +381,23 @@ TEST(test_real_pace)
   bench_protocol(HEAD IDEAL "waveform: {kind: constant, voltage: 1 kV, "
                             "duration: 50 ms}\nsim: {pace: real}\n");
   struct dea_instrument *bench;
-  struct record r = {.inputs = 4, .points = 320};
+  struct record own = {.inputs = 4, .points = 320};
   static double volts[50], capacity[50 * 4 + 4], z_m[320 * 50], frame_s[50];
-  r.volts = capacity;
-  r.z_m = z_m;
-  r.frame_s = frame_s;
-  const struct dea_sink sink = {&r, take_samples, take_profile, NULL};
+  own.volts = capacity;
+  own.z_m = z_m;
+  own.frame_s = frame_s;
+  const struct dea_sink sink = {&own, take_samples, take_profile, NULL};
   assert_int_equal(dea_instrument_open(ctx, &p->sim, p, &bench), DEA_OK);
   assert_int_equal(bench->type->start(ctx, bench), DEA_OK);
   assert_int_equal(bench->type->put(ctx, bench, volts, 50), DEA_OK);
   size_t calls = 0;
-  while (r.samples < 50 && calls < 1000) {
+  while (own.samples < 50 && calls < 1000) {
     assert_int_equal(bench->type->get(ctx, bench, 0.02, &sink), DEA_OK);
     calls++;
   }
-  assert_true(r.samples == 50 && calls > 1);
+  assert_true(own.samples == 50 && calls > 1);
   assert_int_equal(bench->type->get(ctx, bench, 0.001, &sink), DEA_OK); // nothing is left
-  assert_int_equal(r.samples, 50);
+  assert_int_equal(own.samples, 50);
   bench->type->stop(ctx, bench);
   bench->type->close(ctx, bench);
 }
@@ -441,12 +431,12 @@ TEST(test_errors)
 static dea_status play_short(struct dea_context *context)
 {
   struct dea_protocol *own;
-  struct record r = {0};
+  struct record short_one = {0};
   dea_status status =
       dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &own);
-  status = status == DEA_OK ? play(context, own, 10, &r) : status;
+  status = status == DEA_OK ? play(context, own, 10, &short_one) : status;
   dea_protocol_destroy(context, own);
-  free_record(&r);
+  free_record(&short_one);
   return status;
 }
 
@@ -457,4 +447,10 @@ TEST(test_memory)
   assert_true(failing_ends(play_short, DEA_OK) > 10); // there was something to fail
 }
 
-TESTS(set_up, protocol_tear_down)
+static int record_tear_down(void **state)
+{
+  free_record(&r);
+  return protocol_tear_down(state);
+}
+
+TESTS(set_up, record_tear_down)

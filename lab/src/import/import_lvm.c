@@ -59,8 +59,7 @@ struct lvm {
   struct channel channels[CHANNELS_MAX]; // [count]
 };
 
-// Channels: clocks, samples, columns
-// ---------------------------------------------------------------
+// Channels: clocks, samples, columns --------------------------------------------------------------
 
 static const double day_s = 86400;
 

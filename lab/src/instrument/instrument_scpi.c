@@ -341,8 +341,7 @@ static bool read_measured(const struct raw *raw, const struct dea_protocol *prot
   return true;
 }
 
-// The output: what is set
-// ------------------------------------------------------------------------------------
+// The output: what is set -------------------------------------------------------------------------
 
 static dea_status request(struct dea_context *ctx, struct scpi *s, enum question what,
                           const char *question)
