@@ -21,6 +21,7 @@ struct work {
   struct dea_store *store;
   struct dea_evaluator evaluator;
   struct dea_search search;
+  struct dea_arena memory;
   double *scatter; // [scattered][params]; NULL: none
 };
 
@@ -80,26 +81,22 @@ static dea_status build_scatter(struct work *w)
     return DEA_OK;
   }
   const size_t count = w->report->scattered;
-  w->scatter = dea_alloc(w->ctx, count * n, sizeof *w->scatter);
-  double *few = dea_alloc(w->ctx, count * scattering, sizeof *few);
-  double *u = dea_alloc(w->ctx, count * n, sizeof *u);
-  if (w->scatter != NULL && few != NULL && u != NULL) {
-    dea_sample_sobol(scattering, count - 1, (unsigned long long)case_key->file->seed.si, few);
-    for (size_t i = 0, d = 0; i < (count - 1) * n; i++) { // what does not scatter: in its middle
-      u[i] = case_key->variables[i % n].scatter > 0 ? few[d++] : 0.5;
-    }
-    dea_sample_correlate(case_key->file, count - 1, u);
-    for (size_t i = n; i < count * n; i++) {
-      const struct dea_variable *variable = &case_key->variables[i % n];
-      const bool normal = variable->text->distribution.value == DEA_NORMAL;
-      const double at = u[i - n];
-      w->scatter[i] = variable->scatter * (normal ? dea_normal_quantile(at) : 2 * at - 1);
-    }
+  w->scatter = dea_arena_alloc(&w->memory, count * n, sizeof *w->scatter);
+  double *few = dea_arena_alloc(&w->memory, count * scattering, sizeof *few);
+  double *u = dea_arena_alloc(&w->memory, count * n, sizeof *u);
+  DEA_TRY_MEMORY(!w->memory.failed);
+  dea_sample_sobol(scattering, count - 1, (unsigned long long)case_key->file->seed.si, few);
+  for (size_t i = 0, d = 0; i < (count - 1) * n; i++) { // what does not scatter: in its middle
+    u[i] = case_key->variables[i % n].scatter > 0 ? few[d++] : 0.5;
   }
-  const dea_status status = w->scatter != NULL && few != NULL && u != NULL ? DEA_OK : DEA_E_MEMORY;
-  dea_free(w->ctx, few);
-  dea_free(w->ctx, u);
-  return status;
+  dea_sample_correlate(case_key->file, count - 1, u);
+  for (size_t i = n; i < count * n; i++) {
+    const struct dea_variable *variable = &case_key->variables[i % n];
+    const bool normal = variable->text->distribution.value == DEA_NORMAL;
+    const double at = u[i - n];
+    w->scatter[i] = variable->scatter * (normal ? dea_normal_quantile(at) : 2 * at - 1);
+  }
+  return DEA_OK;
 }
 
 /* Where a search begins: of what is counted off, at the value nearest to the start. */
@@ -220,19 +217,17 @@ static dea_status check(const struct work *w)
 // Files -------------------------------------------------------------------------------------------
 
 /* All evaluations in their order, as a plan. */
-static dea_status write_cases(const struct work *w)
+static dea_status write_cases(struct work *w)
 {
   const size_t n = w->case_key->variable_count, count = dea_store_count(w->store);
-  struct dea_plan plan = {
-      .p = dea_alloc(w->ctx, n * count, sizeof(double)), .count = count, .samples = count};
+  struct dea_plan plan = {.p = dea_arena_alloc(&w->memory, n * count, sizeof(double)),
+                          .count = count,
+                          .samples = count};
   DEA_TRY_MEMORY(plan.p != NULL);
   for (size_t i = 0; i < count; i++) {
     memcpy(plan.p + i * n, dea_store_get(w->store, i)->p, n * sizeof(double));
   }
-  dea_status status =
-      dea_sweep_write(w->case_key, &plan, w->store, &w->options->format, w->options->folder);
-  dea_plan_free(w->ctx, &plan);
-  return status;
+  return dea_sweep_write(w->case_key, &plan, w->store, &w->options->format, w->options->folder);
 }
 
 /* A variable this near to a bound, as a share of its range, is at it. */
@@ -582,11 +577,14 @@ dea_status dea_optimise_run(const struct dea_case_key *case_key,
                             const struct dea_optimise_options *options,
                             struct dea_optimise_report *report)
 {
-  struct work w = {
-      .ctx = case_key->ctx, .case_key = case_key, .options = options, .report = report};
+  struct work w = {.ctx = case_key->ctx,
+                   .case_key = case_key,
+                   .options = options,
+                   .report = report,
+                   .memory = {.ctx = case_key->ctx}};
   *report = (struct dea_optimise_report){0};
   dea_status status = run(&w);
   dea_store_close(w.store);
-  dea_free(w.ctx, w.scatter);
+  dea_arena_free(&w.memory);
   return status;
 }

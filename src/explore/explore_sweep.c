@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The order of evaluation
-// --------------------------------------------------------------------------
+// The order of evaluation -------------------------------------------------------------------------
 
 enum { GROUP = 40 };                // one of them is solved from rest, and what is near is quick
 static const double whole_wide = 4; // a whole number's range counts so many times: another mesh
@@ -105,18 +104,14 @@ static void split(struct splitting *w, size_t from, size_t count)
   split(w, from + count / 2, count - count / 2);
 }
 
-dea_status dea_order_of(struct dea_context *ctx, const double *p, size_t count, size_t params,
+dea_status dea_order_of(struct dea_arena *memory, const double *p, size_t count, size_t params,
                         const bool *whole, size_t group, struct dea_order *out)
 {
   *out = (struct dea_order){.group = group};
-  out->cases = dea_alloc(ctx, count, sizeof *out->cases);
-  out->first = dea_alloc(ctx, count, sizeof *out->first);
-  struct item *items = dea_alloc(ctx, count, sizeof *items);
-  if (out->cases == NULL || out->first == NULL || items == NULL) {
-    dea_free(ctx, items);
-    dea_order_free(ctx, out);
-    return DEA_E_MEMORY;
-  }
+  out->cases = dea_arena_alloc(memory, count, sizeof *out->cases);
+  out->first = dea_arena_alloc(memory, count, sizeof *out->first);
+  struct item *items = dea_arena_alloc(memory, count, sizeof *items);
+  DEA_TRY_MEMORY(!memory->failed);
   for (size_t i = 0; i < count; i++) {
     out->cases[i] = out->first[i] = i;
   }
@@ -129,33 +124,10 @@ dea_status dea_order_of(struct dea_context *ctx, const double *p, size_t count, 
     }
     split(&w, 0, count);
   }
-  dea_free(ctx, items);
   return DEA_OK;
 }
 
-/* Groups of the plan alone: the same whatever is done, and however many processes do it. */
-static dea_status build_order(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                              struct dea_order *out)
-{
-  bool whole[DEA_CASE_PARAMS_MAX];
-  for (size_t j = 0; j < case_key->variable_count; j++) {
-    whole[j] = case_key->params[j].whole;
-  }
-  const bool warms = // they may begin from each other
-      case_key->model.type->load != NULL && case_key->file->begin.value == DEA_BEGIN_NEAREST;
-  return dea_order_of(case_key->ctx, plan->p, plan->count, case_key->variable_count, whole,
-                      warms ? GROUP : 1, out);
-}
-
-void dea_order_free(struct dea_context *ctx, struct dea_order *order)
-{
-  dea_free(ctx, order->cases);
-  dea_free(ctx, order->first);
-  *order = (struct dea_order){0};
-}
-
-// The evaluation
-// -----------------------------------------------------------------------------------
+// The evaluation ----------------------------------------------------------------------------------
 
 enum { SHARES = 8 }; // blocks of a shard, at least, where there are so many cases
 
@@ -169,6 +141,7 @@ struct work {
   const struct dea_sweep_options *options;
   struct dea_sweep_report *report;
   const struct dea_plan *plan;
+  struct dea_arena memory;
   struct dea_order order;
   struct dea_store *store;
   struct stretch *stretches; // [processes]
@@ -284,15 +257,21 @@ static dea_status evaluate_all(struct work *w)
 /* Evaluates what is open, groups after each other. */
 static dea_status evaluate(struct work *w)
 {
-  struct dea_context *ctx = w->case_key->ctx;
-  DEA_TRY(ctx, build_order(w->case_key, w->plan, &w->order));
+  const struct dea_case_key *case_key = w->case_key;
+  bool whole[DEA_CASE_PARAMS_MAX];
+  for (size_t j = 0; j < case_key->variable_count; j++) {
+    whole[j] = case_key->params[j].whole;
+  }
+  const bool warms = // they may begin from each other
+      case_key->model.type->load != NULL && case_key->file->begin.value == DEA_BEGIN_NEAREST;
+  // of the plan alone: the same whatever is done, and however many processes do it
+  DEA_TRY(case_key->ctx,
+          dea_order_of(&w->memory, w->plan->p, w->plan->count, case_key->variable_count, whole,
+                       warms ? GROUP : 1, &w->order));
   w->block = w->plan->count / (SHARES * w->options->shard.parts);
   w->block = w->block < 1 ? 1 : w->block > w->order.group ? w->order.group : w->block;
-  w->stretches = dea_alloc(ctx, w->options->processes, sizeof *w->stretches);
-  dea_status status = w->stretches != NULL ? evaluate_all(w) : DEA_E_MEMORY;
-  dea_free(ctx, w->stretches);
-  dea_order_free(ctx, &w->order);
-  return status;
+  w->stretches = dea_arena_alloc(&w->memory, w->options->processes, sizeof *w->stretches);
+  return w->stretches != NULL ? evaluate_all(w) : DEA_E_MEMORY;
 }
 
 /* Adds what a case's numbers are flagged with. */
@@ -363,11 +342,15 @@ dea_status dea_sweep_run(const struct dea_case_key *case_key,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report)
 {
   struct dea_plan plan;
+  struct work w = {.case_key = case_key,
+                   .options = options,
+                   .report = report,
+                   .plan = &plan,
+                   .memory = {.ctx = case_key->ctx}};
   *report = (struct dea_sweep_report){0};
-  DEA_TRY(case_key->ctx, dea_plan_build(case_key, &plan));
-  struct work w = {.case_key = case_key, .options = options, .report = report, .plan = &plan};
-  dea_status status = run(&w);
+  dea_status status = dea_plan_build(&w.memory, case_key, &plan);
+  status = status == DEA_OK ? run(&w) : status;
   dea_store_close(w.store);
-  dea_plan_free(case_key->ctx, &plan);
+  dea_arena_free(&w.memory);
   return status;
 }

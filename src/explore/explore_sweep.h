@@ -56,10 +56,9 @@ struct dea_order {
 };
 
 /* Order of points p [count][params] in groups of at most `group`; whole[j]: numbers of parameter j
- * are whole ones, which neighbours have in common. Arrays: owned by the caller. */
-dea_status dea_order_of(struct dea_context *ctx, const double *p, size_t count, size_t params,
+ * are whole ones, which neighbours have in common. Memory of the arena. */
+dea_status dea_order_of(struct dea_arena *memory, const double *p, size_t count, size_t params,
                         const bool *whole, size_t group, struct dea_order *out);
-void dea_order_free(struct dea_context *ctx, struct dea_order *order);
 
 // What samples say: moments, quantiles, Sobol indices
 

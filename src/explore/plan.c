@@ -228,7 +228,8 @@ dea_status dea_plan_check(const struct dea_case_key *case_key)
   return dea_finding_count(ctx, DEA_ERROR) == errors ? DEA_OK : cannot_be_made(ctx);
 }
 
-static dea_status build_grid(const struct dea_case_key *case_key, struct dea_plan *out)
+static dea_status build_grid(struct dea_arena *memory, const struct dea_case_key *case_key,
+                             struct dea_plan *out)
 {
   const size_t n = case_key->variable_count;
   double count = 1;
@@ -239,7 +240,7 @@ static dea_status build_grid(const struct dea_case_key *case_key, struct dea_pla
     return too_many(case_key, count);
   }
   out->samples = out->count = (size_t)count;
-  out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
+  out->p = dea_arena_alloc(memory, out->count * n, sizeof *out->p);
   DEA_TRY_MEMORY(out->p != NULL);
   for (size_t c = 0; c < out->count; c++) {
     size_t rest = c;
@@ -252,14 +253,15 @@ static dea_status build_grid(const struct dea_case_key *case_key, struct dea_pla
   return DEA_OK;
 }
 
-static dea_status build_sparse(const struct dea_case_key *case_key, struct dea_plan *out)
+static dea_status build_sparse(struct dea_arena *memory, const struct dea_case_key *case_key,
+                               struct dea_plan *out)
 {
   const size_t n = case_key->variable_count;
   const int level = (int)case_key->file->level.si;
   out->samples = out->count = dea_sparse_grid(n, level, NULL);
-  out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
-  out->nodes = dea_alloc(case_key->ctx, out->count * n, 1);
-  DEA_TRY_MEMORY(out->p != NULL && out->nodes != NULL);
+  out->p = dea_arena_alloc(memory, out->count * n, sizeof *out->p);
+  out->nodes = dea_arena_alloc(memory, out->count * n, 1);
+  DEA_TRY_MEMORY(!memory->failed);
   dea_sparse_grid(n, level, out->nodes);
   for (size_t i = 0; i < out->count * n; i++) {
     out->p[i] = value_at(&case_key->variables[i % n], dea_sparse_grid_share(level, out->nodes[i]));
@@ -267,7 +269,8 @@ static dea_status build_sparse(const struct dea_case_key *case_key, struct dea_p
   return DEA_OK;
 }
 
-static dea_status build_samples(const struct dea_case_key *case_key, struct dea_plan *out)
+static dea_status build_samples(struct dea_arena *memory, const struct dea_case_key *case_key,
+                                struct dea_plan *out)
 {
   const size_t n = case_key->variable_count, samples = (size_t)case_key->file->samples.si;
   const bool indices = case_key->file->plan.value == DEA_PLAN_INDICES;
@@ -283,12 +286,9 @@ static dea_status build_samples(const struct dea_case_key *case_key, struct dea_
   }
   out->samples = samples;
   out->count = samples * blocks;
-  out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
-  double *u = dea_alloc(case_key->ctx, samples * dimensions, sizeof *u);
-  if (out->p == NULL || u == NULL) {
-    dea_free(case_key->ctx, u);
-    return DEA_E_MEMORY;
-  }
+  out->p = dea_arena_alloc(memory, out->count * n, sizeof *out->p);
+  double *u = dea_arena_alloc(memory, samples * dimensions, sizeof *u);
+  DEA_TRY_MEMORY(!memory->failed);
   (case_key->file->plan.value == DEA_PLAN_RANDOM ? dea_sample_random : dea_sample_sobol)(
       dimensions, samples, (unsigned long long)case_key->file->seed.si, u);
   if (!indices) {
@@ -303,27 +303,16 @@ static dea_status build_samples(const struct dea_case_key *case_key, struct dea_
       }
     }
   }
-  dea_free(case_key->ctx, u);
   return DEA_OK;
 }
 
-dea_status dea_plan_build(const struct dea_case_key *case_key, struct dea_plan *out)
+dea_status dea_plan_build(struct dea_arena *memory, const struct dea_case_key *case_key,
+                          struct dea_plan *out)
 {
+  const int kind = case_key->file->plan.value;
   *out = (struct dea_plan){0};
   DEA_TRY(case_key->ctx, dea_plan_check(case_key));
-  const int kind = case_key->file->plan.value;
-  dea_status status = kind == DEA_PLAN_GRID     ? build_grid(case_key, out)
-                      : kind == DEA_PLAN_SPARSE ? build_sparse(case_key, out)
-                                                : build_samples(case_key, out);
-  if (status != DEA_OK) {
-    dea_plan_free(case_key->ctx, out);
-  }
-  return status;
-}
-
-void dea_plan_free(struct dea_context *ctx, struct dea_plan *plan)
-{
-  dea_free(ctx, plan->p);
-  dea_free(ctx, plan->nodes);
-  *plan = (struct dea_plan){0};
+  return kind == DEA_PLAN_GRID     ? build_grid(memory, case_key, out)
+         : kind == DEA_PLAN_SPARSE ? build_sparse(memory, case_key, out)
+                                   : build_samples(memory, case_key, out);
 }

@@ -18,7 +18,7 @@ double dea_normal_quantile(double u);
  * numbers behind them; without any they stay. */
 void dea_sample_correlate(const struct dea_explore_file *file, size_t count, double *u);
 
-/* Cases [count][params], owned (dea_plan_free). Of indices: A, B, then for each variable A with the
+/* Cases [count][params], in memory of an arena. Of indices: A, B, then for each variable A with the
  * variable of B, of `samples` each. */
 struct dea_plan {
   double *p;
@@ -29,5 +29,5 @@ struct dea_plan {
  * Errors are findings; DEA_E_DESIGN then. */
 dea_status dea_plan_check(const struct dea_case_key *case_key);
 /* Errors (too many cases, what has no range) are findings; DEA_E_DESIGN then. */
-dea_status dea_plan_build(const struct dea_case_key *case_key, struct dea_plan *out);
-void dea_plan_free(struct dea_context *ctx, struct dea_plan *plan);
+dea_status dea_plan_build(struct dea_arena *memory, const struct dea_case_key *case_key,
+                          struct dea_plan *out);

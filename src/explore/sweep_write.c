@@ -335,8 +335,7 @@ static dea_status write_indices(const struct work *w, double *values)
   return status;
 }
 
-// Figures: of samples at several voltages the band of each quantity's curve
-// -------------------------
+// Bands of quantities at several voltages ---------------------------------------------------------
 
 /* Spreads of a quantity at all voltages and how it is shown. */
 struct shown {
@@ -455,8 +454,7 @@ static dea_status draw(const struct dea_case_key *case_key, const struct dea_spr
   return dea_plot_folder_draw(&list, status);
 }
 
-// All of it
-// ----------------------------------------------------------------------------------------
+// All of it ---------------------------------------------------------------------------------------
 
 static dea_status write_all(const struct work *w)
 {

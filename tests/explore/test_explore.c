@@ -142,13 +142,14 @@ TEST(test_order)
   static double p[N * D];
   const bool whole[D] = {true, false, false};
   bool there[N] = {false};
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_order order;
   dea_sample_sobol(D, N, 1, p);
   for (size_t i = 0; i < N; i++) {
     p[i * D] = p[i * D] < 0.5 ? 4 : 8;
     p[i * D + 2] *= 1e-6; // the range counts, not the unit
   }
-  assert_int_equal(dea_order_of(ctx, p, N, D, whole, GROUP, &order), DEA_OK);
+  assert_int_equal(dea_order_of(&memory, p, N, D, whole, GROUP, &order), DEA_OK);
   size_t groups = 0;
   for (size_t from = 0, to = 0; from < N; from = to, groups++) {
     double low[D] = {INFINITY, INFINITY, INFINITY}, high[D] = {0};
@@ -166,12 +167,11 @@ TEST(test_order)
     assert_true(high[0] == low[0] && high[1] - low[1] < 0.3 && high[2] - low[2] < 0.3e-6);
   }
   assert_int_equal(groups, 64);
-  dea_order_free(ctx, &order);
-  assert_int_equal(dea_order_of(ctx, p, N, D, whole, 1, &order), DEA_OK);
+  assert_int_equal(dea_order_of(&memory, p, N, D, whole, 1, &order), DEA_OK);
   for (size_t i = 0; i < N; i++) { // nobody begins from another: as planned
     assert_true(order.cases[i] == i && order.first[i] == i);
   }
-  dea_order_free(ctx, &order);
+  dea_arena_free(&memory);
 }
 
 // Processes ---------------------------------------------------------------------------------------
