@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -152,7 +151,6 @@ struct dea_studio_jobs {
   int folder;
   int cores;
   int last_id;
-  int wake[2]; // a pipe: there is something to do
   pthread_mutex_t lock;
   size_t count;
   struct job jobs[JOBS_MAX];
@@ -169,8 +167,7 @@ struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const ch
   jobs->program = program;
   jobs->folder = folder;
   jobs->cores = cores > 1 ? (int)cores : 1;
-  if (pipe2(jobs->wake, O_CLOEXEC | O_NONBLOCK) != 0 ||
-      pthread_mutex_init(&jobs->lock, NULL) != 0) {
+  if (pthread_mutex_init(&jobs->lock, NULL) != 0) {
     dea_fail(ctx, DEA_E_IO, "no queue: %s", strerror(errno));
     dea_free(ctx, jobs);
     return NULL;
@@ -209,7 +206,6 @@ int dea_studio_jobs_add(struct dea_studio_jobs *jobs, const char *action, const 
     id = job->id;
   }
   pthread_mutex_unlock(&jobs->lock);
-  (void)!write(jobs->wake[1], "", 1);
   return id;
 }
 
@@ -375,9 +371,6 @@ static void inspect(struct job *job)
 
 void dea_studio_jobs_turn(struct dea_studio_jobs *jobs)
 {
-  struct pollfd wait[JOBS_MAX + 1] = {{.fd = jobs->wake[0], .events = POLLIN}};
-  nfds_t count = 1;
-  char taken[64];
   int running = 0;
   pthread_mutex_lock(&jobs->lock);
   for (size_t i = 0; i < jobs->count; i++) {
@@ -391,16 +384,9 @@ void dea_studio_jobs_turn(struct dea_studio_jobs *jobs)
     } else if (job->state == RUNNING) {
       inspect(job);
     }
-    if (job->state == RUNNING) {
-      wait[count++] = (struct pollfd){.fd = job->terminal, .events = POLLIN};
-    }
   }
   pthread_mutex_unlock(&jobs->lock);
-  poll(wait, count, 100);
-  if (wait[0].revents == 0) { // a terminal without a writer is always ready
-    dea_clock_wait(0.02);
-  }
-  (void)!read(jobs->wake[0], taken, sizeof taken);
+  dea_clock_wait(0.03);
 }
 
 void dea_studio_jobs_destroy(struct dea_context *ctx, struct dea_studio_jobs *jobs)
@@ -424,8 +410,6 @@ void dea_studio_jobs_destroy(struct dea_context *ctx, struct dea_studio_jobs *jo
       }
     }
   }
-  close(jobs->wake[0]);
-  close(jobs->wake[1]);
   pthread_mutex_destroy(&jobs->lock);
   dea_free(ctx, jobs);
 }

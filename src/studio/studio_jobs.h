@@ -45,6 +45,5 @@ json_t *dea_studio_jobs_json(struct dea_studio_jobs *jobs);
 
 // From the thread that made them, with whose end they end:
 
-/* Starts those whose turn it is, hears what they say, and takes their ends; waits for something of
- * that, at most 0.1 s. */
+/* Starts those whose turn it is, hears what they say, and takes their ends; waits 0.03 s. */
 void dea_studio_jobs_turn(struct dea_studio_jobs *jobs);
