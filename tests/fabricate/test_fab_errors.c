@@ -2,7 +2,6 @@
 // ctest: quick, heavy
 #include "design_text.h"
 #include "fabricate/dxf.h"
-#include "fabricate/labels.h"
 #include "fabricate/svg.h"
 #include "failing_allocator.h"
 
@@ -181,28 +180,6 @@ TEST(test_hostile_values)
       dea_context_destroy(ctx);
     }
   }
-}
-
-TEST(test_letters)
-{
-  struct dea_context *ctx;
-  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  struct dea_text text = {.ctx = ctx};
-  dea_xml_add(&text, "<b a=\"1\">&'\xc3\xa4\x01\xff\xc3");
-  assert_string_equal(dea_text_get(&text),
-                      "&lt;b a=&quot;1&quot;&gt;&amp;&#39;\xc3\xa4 \xef\xbf\xbd\xef\xbf\xbd");
-  dea_text_free(&text);
-  static const char *const bad[] = {"\xc0\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\x80",
-                                    "\xf0\x9f"};
-  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-    const char *at = bad[i];
-    assert_int_equal(dea_letter_next(&at), 0xfffd);
-    assert_ptr_equal(at, bad[i] + 1);
-  }
-  const char *smile = "\xf0\x9f\x98\x80";
-  assert_int_equal(dea_letter_next(&smile), 0x1f600);
-  assert_int_equal(dea_letter_next(&smile), 0);
-  dea_context_destroy(ctx);
 }
 
 TESTS(NULL, NULL)
