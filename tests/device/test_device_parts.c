@@ -447,19 +447,6 @@ TEST(test_no_dielectric_is_a_note)
   drop();
 }
 
-/* A ply may span what is open below it; what reaches beyond all of that is said. */
-TEST(test_overhang_is_a_note)
-{
-  build(0, NULL);
-  assert_null(find_finding(ctx, DEA_NOTE, "overhangs"));
-  drop();
-  build(PLIES, "plies: [{name: lower, shape: active, material: film, thickness: 100 um}, "
-               "{name: upper, shape: film, material: film, thickness: 50 um}]");
-  assert_non_null(
-      find_finding(ctx, DEA_NOTE, "the ply 'upper' overhangs the plies below it by up"));
-  drop();
-}
-
 static dea_status build_example(struct dea_context *own)
 {
   struct dea_design *read;
