@@ -126,6 +126,22 @@ void *dea_alloc(struct dea_context *ctx, size_t count, size_t size)
   return pointer;
 }
 
+dea_status dea_array_grow(struct dea_context *ctx, void *array, size_t count, size_t *capacity,
+                          size_t size)
+{
+  void *items;
+  if (count < *capacity) {
+    return DEA_OK;
+  }
+  size_t wanted = *capacity > 0 ? 2 * *capacity : 8;
+  memcpy(&items, array, sizeof items);
+  items = dea_resize(ctx, items, wanted, size);
+  DEA_TRY_MEMORY(items != NULL);
+  memcpy(array, &items, sizeof items);
+  *capacity = wanted;
+  return DEA_OK;
+}
+
 char *dea_copy_text(struct dea_context *ctx, const char *text, size_t length)
 {
   size_t n = 0;
@@ -195,20 +211,6 @@ void dea_context_clear(struct dea_context *ctx)
   ctx->chain[0] = '\0';
 }
 
-/* Makes room for one more item; returns the (possibly moved) array or NULL, old one then intact. */
-static void *grow(struct dea_context *ctx, void *items, size_t count, size_t *capacity, size_t size)
-{
-  if (count < *capacity) {
-    return items;
-  }
-  size_t wanted = *capacity > 0 ? 2 * *capacity : 8;
-  void *moved = dea_resize(ctx, items, wanted, size);
-  if (moved != NULL) {
-    *capacity = wanted;
-  }
-  return moved;
-}
-
 static bool is_known(const struct dea_context *ctx, enum dea_severity severity,
                      struct dea_location location, const char *text)
 {
@@ -237,10 +239,8 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
       is_known(ctx, severity, location, text)) {
     return DEA_OK;
   }
-  void *items =
-      grow(ctx, ctx->findings, ctx->finding_count, &ctx->finding_room, sizeof *ctx->findings);
-  DEA_TRY_MEMORY(items != NULL);
-  ctx->findings = items;
+  DEA_TRY_STATUS(dea_array_grow(ctx, &ctx->findings, ctx->finding_count, &ctx->finding_room,
+                                sizeof *ctx->findings));
   char *copy = dea_copy_text(ctx, text, sizeof text);
   DEA_TRY_MEMORY(copy != NULL);
   ctx->findings[ctx->finding_count++] = (struct dea_finding){severity, location, copy};
@@ -320,11 +320,10 @@ const char *dea_intern(struct dea_context *ctx, const char *text)
       return ctx->names[i];
     }
   }
-  void *items = grow(ctx, ctx->names, ctx->name_count, &ctx->name_room, sizeof *ctx->names);
-  if (items == NULL) {
+  if (dea_array_grow(ctx, &ctx->names, ctx->name_count, &ctx->name_room, sizeof *ctx->names) !=
+      DEA_OK) {
     return NULL;
   }
-  ctx->names = items;
   char *copy = dea_copy_text(ctx, text, SIZE_MAX);
   if (copy != NULL) {
     ctx->names[ctx->name_count++] = copy;

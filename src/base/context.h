@@ -82,6 +82,10 @@ void *dea_alloc(struct dea_context *ctx, size_t count, size_t size);
 /* Grows or shrinks memory of dea_alloc; new bytes are not zeroed. NULL on failure: old one stays.
  */
 void *dea_resize(struct dea_context *ctx, void *pointer, size_t count, size_t size);
+/* Makes room for one more item of `size` in an array, the pointer to which is at *array (NULL at
+ * first). DEA_E_MEMORY: the old one stays. */
+dea_status dea_array_grow(struct dea_context *ctx, void *array, size_t count, size_t *capacity,
+                          size_t size);
 /* Copies text (at most `length` bytes of it); NULL on failure. */
 char *dea_copy_text(struct dea_context *ctx, const char *text, size_t length);
 /* NULL is fine. */

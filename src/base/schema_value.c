@@ -28,13 +28,8 @@ dea_status dea_schema_list(const struct dea_reader *reader, const char *path, co
   if (listing == NULL) {
     return DEA_OK;
   }
-  if (listing->count == listing->capacity) {
-    size_t capacity = 2 * listing->capacity + 32;
-    void *moved = dea_resize(reader->ctx, listing->items, capacity, sizeof *listing->items);
-    DEA_TRY_MEMORY(moved != NULL);
-    listing->items = moved;
-    listing->capacity = capacity;
-  }
+  DEA_TRY_STATUS(dea_array_grow(reader->ctx, &listing->items, listing->count, &listing->capacity,
+                                sizeof *listing->items));
   char *copy = dea_copy_text(reader->ctx, path, DEA_PATH_SIZE);
   DEA_TRY_MEMORY(copy != NULL);
   listing->items[listing->count++] =

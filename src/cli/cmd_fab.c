@@ -9,7 +9,7 @@
 struct request {
   const char *design, *output; // output: NULL for the folder of the design's name
   struct cli_overrides overrides;
-  bool force, drawing, json, sensitivity;
+  bool force, drawing, json;
 };
 
 static dea_status add_name(void *array, const char *name)
@@ -67,8 +67,7 @@ static dea_status write_files(struct dea_cli *cli, const struct request *request
                               const struct dea_workshop *workshop)
 {
   struct dea_text name = {.ctx = cli->ctx};
-  const struct dea_workshop_options options = {request->force, request->drawing,
-                                               request->sensitivity};
+  const struct dea_workshop_options options = {request->force, request->drawing};
   const char *directory = cli_output_name(request->output, request->design, "fab", &name);
   dea_status status = directory == NULL
                           ? DEA_E_MEMORY
@@ -102,11 +101,8 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     CLI_DESIGN_ROW,
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "folder for the files; DESIGN's name with .fab if not given"),
-    CLI_FORCE_ROW('f', "replace files that are there; sheets of parts that DESIGN has no more go"),
+    CLI_FORCE_ROW('f', "replace files that are there"),
     {"drawing", 0, CLI_FLAG, NULL, "only the drawing of the actuator", CLI_AT(drawing)},
-    {"sensitivity", 0, CLI_FLAG, NULL,
-     "what tolerances do also to a device of plies, which takes its solution by model 3d",
-     CLI_AT(sensitivity)},
     CLI_SET_ROW(0, CLI_KEY, "fabrication.kerf=0.15mm"),
     CLI_JSON_ROW("areas, lengths and names of files as JSON"),
     {0}};

@@ -9,7 +9,7 @@
 #define AT(member) offsetof(struct dea_design_raw, design.member)
 #define RAW(member) offsetof(struct dea_design_raw, member)
 
-enum { RADIUS_GROUP = 1, VOLTAGE_GROUP, FIELDS_GROUP };
+enum { RADIUS_GROUP = 1, VOLTAGE_GROUP, FIELDS_GROUP, TIP_GROUP };
 
 static const struct dea_field film_fields[] = {
     DEA_LABEL_ROW(
@@ -59,6 +59,224 @@ static const struct dea_field electrode_fields[] = {
                    .max = 1e15, .default_text = "0 ohm"),
 };
 
+// Fibres ------------------------------------------------------------------------------------------
+
+static const struct dea_field bond_fields[] = {
+    DEA_NUMBER_ROW("thickness", AT(fibres.bond_thickness_m), "m", "50 um",
+                   "thickness of the glue between fibre and film; 0: none", .max = 0.01,
+                   .default_text = "0 um"),
+    DEA_NUMBER_ROW("modulus", AT(fibres.bond_modulus_Pa), "Pa", "1 MPa",
+                   "Young's modulus of the glue; without effect at thickness 0", .above_min = true,
+                   .max = 1e13, .default_text = "1 MPa"),
+};
+
+static const struct dea_record bond_record = {"bond", "layer of glue between fibre and film",
+                                              bond_fields, COUNT(bond_fields)};
+
+// In the order of enum dea_outer_end.
+static const char *const outer_ends[] = {"clamped", "hinged", "free", NULL};
+
+static const struct dea_field fibre_fields[] = {
+    DEA_INTEGER_ROW("count", AT(fibres.count), "4", "number of fibres, evenly spread", .min = 1,
+                    .max = 360, .required = true),
+    DEA_NUMBER_ROW("angle", AT(fibres.angle_rad), "radian", "15 degree",
+                   "of the first fibre from the x axis, counter-clockwise, seen from the fibres",
+                   .min = -7, .max = 7, .default_text = "0 degree"),
+    DEA_NUMBER_ROW("width", AT(fibres.width_m), "m", "2 mm",
+                   "width of a fibre; it is bonded free of stress, so this is its own width",
+                   .above_min = true, .max = 1, .default_text = "2 mm"),
+    DEA_NUMBER_ROW("tip_width", AT(fibres.tip_width_m), "m", "1 mm",
+                   "width of a fibre at its tip, if it tapers", .above_min = true, .max = 1,
+                   .absent_text = "width"),
+    DEA_NUMBER_ROW("thickness", AT(fibres.thickness_m), "m", "100 um", "thickness of a fibre",
+                   .above_min = true, .max = 0.1, .default_text = "100 um"),
+    DEA_FIELD_ROW(INPLANE, "overlap", AT(fibres.overlap), .unit = "m", .min = -1, .max = 1,
+                  .default_text = "0 mm stretched", .group = TIP_GROUP, .option = 1,
+                  .doc = "how far a fibre reaches over the electrode; negative: a gap",
+                  .example = "0.5 mm stretched"),
+    DEA_FIELD_ROW(INPLANE, "length", AT(fibres.length), .unit = "m", .above_min = true, .max = 1,
+                  .group = TIP_GROUP, .option = 2,
+                  .doc = "length from the inner edge of the frame to the tip",
+                  .example = "11.25 mm stretched"),
+    DEA_FIELD_ROW(INPLANE, "tip_radius", AT(fibres.tip_radius), .unit = "m", .max = 1,
+                  .group = TIP_GROUP, .option = 3, .doc = "distance of the tip from the centre",
+                  .example = "3.75 mm stretched"),
+    DEA_LABEL_ROW("material", AT(fibres.material), "pet", "material of the fibres",
+                  .or_section = true, .default_text = "pet"),
+    DEA_FIELD_ROW(RECORD, "bond", 0, .record = &bond_record,
+                  .doc = "layer of glue between fibre and film"),
+    DEA_CHOICE_ROW("outer_end", AT(fibres.outer_end), outer_ends, "clamped",
+                   "how the frame holds the fibre: its whole end, its lower edge only, not at all",
+                   .default_text = "clamped"),
+    DEA_FIELD_ROW(INPLANE, "outer_gap", AT(fibres.outer_gap), .unit = "m", .above_min = true,
+                  .max = 1, .default_text = "1 mm stretched",
+                  .doc =
+                      "film between a free outer end and the frame; without effect on other ends",
+                  .example = "1 mm stretched"),
+};
+
+static const struct dea_record fibres_record = {
+    "fibres", "radial fibres on the upper face, from the frame towards the centre", fibre_fields,
+    COUNT(fibre_fields)};
+
+// Drive -------------------------------------------------------------------------------------------
+
+static const struct dea_field drive_fields[] = {
+    DEA_FIELD_ROW(SECTION, "waveform", AT(drive.section), .kinds = dea_wave_records,
+                  .absent_text = "none",
+                  .doc = "voltage asked of the supply; its keys go with its kind",
+                  .example = "{kind: square, high: 7 kV, frequency: 0.5 Hz}"),
+    DEA_NUMBER_ROW("series_resistance", AT(drive.series_resistance_ohm), "ohm", "1 Mohm",
+                   "resistance between supply and film, that of the electrodes in it", .max = 1e15,
+                   .default_text = "0 ohm"),
+    DEA_NUMBER_ROW("current_limit", AT(drive.current_limit_A), "A", "10 mA",
+                   "largest current of the supply", .above_min = true, .max = 1e3,
+                   .absent_text = "none"),
+    DEA_NUMBER_ROW("disconnect", AT(drive.disconnect_s), "s", "2 s",
+                   "time at which the supply is disconnected: from then on the film keeps its "
+                   "charge, less what leaks through it",
+                   .absent_text = "never"),
+    DEA_NUMBER_ROW("slew_limit", AT(drive.slew_limit_V_per_s), "V/s", "700 V/us",
+                   "fastest change of the supply's voltage", .above_min = true, .max = 1e15,
+                   .absent_text = "none"),
+};
+
+static const struct dea_record drive_record = {"drive", "waveform and supply", drive_fields,
+                                               COUNT(drive_fields)};
+
+// Model 3d, and reduced ---------------------------------------------------------------------------
+
+// In the order of enum dea_solid_film, enum dea_solid_domain and enum dea_buckling_branch.
+static const char *const films[] = {"solid", "membrane", NULL};
+static const char *const electrostatics[] = {"thin", "coupled",
+                                             NULL}; // enum dea_solid_electrostatics
+static const char *const domains[] = {"sector", "disc", "whole", NULL}; // whole: as disc
+static const char *const branches[] = {"any", "fibres", "back", NULL};
+
+static const struct dea_field adapt_fields[] = {
+    DEA_LABEL_ROW("monitor", AT(compute.solid.adapt.monitor), "hub",
+                  "monitor whose error decides: of a point or a body its largest displacement, of "
+                  "a line its length, of a shape its area",
+                  .required = true),
+    DEA_NUMBER_ROW("tolerance", AT(compute.solid.adapt.tolerance), "1", "0.5 %",
+                   "estimated error that is small enough, over that motion", .above_min = true,
+                   .max = 1, .default_text = "1 %"),
+    DEA_INTEGER_ROW("passes", AT(compute.solid.adapt.passes), "3", "meshes that are made at most",
+                    .min = 1, .max = 12, .default_text = "5"),
+};
+static const struct dea_record adapt_record = {
+    "adapt", "refinement until a monitor is exact enough", adapt_fields, COUNT(adapt_fields)};
+
+static const struct dea_field solid_fields[] = {
+    DEA_CHOICE_ROW("film", AT(compute.solid.film), films, "solid",
+                   "elements of the film: solid ones, or a membrane, a faster preview within 10 to "
+                   "20 % at the fibre tip",
+                   .default_text = "solid"),
+    DEA_CHOICE_ROW(
+        "domain", AT(compute.solid.domain), domains, "sector",
+        "from a fibre's axis halfway to the next, or between two lines of the device's symmetry; "
+        "or all of it with motions that break symmetry (disc and whole are the same)",
+        .default_text = "sector"),
+    DEA_NUMBER_ROW("refinement", AT(compute.solid.refinement), "1", "1.5",
+                   "fineness of the mesh: 1 is within 1 to 3 % at a fibre tip, each one more "
+                   "halves all sizes in the plane",
+                   .min = 1, .max = 6, .default_text = "1"),
+    DEA_NUMBER_ROW(
+        "tip_refinement", AT(compute.solid.tip_refinement), "1", "2.5",
+        "the same inside the circles of the electrode's edge and the fibre tips, where the film "
+        "goes slack first, where that is finer; elements also grow slower there (of a disc)",
+        .min = 1, .max = 6, .absent_text = "as refinement"),
+    DEA_FIELD_ROW(
+        RECORD, "adapt", 0, .record = &adapt_record,
+        .present_offset = AT(compute.solid.adapt.asked),
+        .doc =
+            "finer where the error of a monitor at the last voltage comes from, until it is small "
+            "enough; of devices made of `plies`"),
+    DEA_INTEGER_ROW("order", AT(compute.solid.order), "3", "order of the elements in the plane",
+                    .min = 1, .max = 3, .default_text = "2"),
+    DEA_INTEGER_ROW("order_z", AT(compute.solid.order_z), "3",
+                    "order of the elements through the thickness of each layer", .min = 1, .max = 3,
+                    .default_text = "2"),
+    DEA_INTEGER_ROW("elements_z", AT(compute.solid.elements_z), "6",
+                    "elements through the thickness of the film, thinner towards its faces; "
+                    "`field: coupled` needs 6 and grades the mesh to the electrode's edge as well "
+                    "(of devices made of `plies`: of each that has no `elements` of its own)",
+                    .min = 1, .max = 16, .default_text = "1"),
+    DEA_CHOICE_ROW(
+        "field", AT(compute.solid.field), electrostatics, "coupled",
+        "electric field: V/h where electrodes face each other, or from the potential as an "
+        "unknown, with the fringe at the electrode's edge (of solid films; of devices made of "
+        "`plies` without "
+        "rigid bodies, with one channel)",
+        .default_text = "thin"),
+    DEA_CHOICE_ROW(
+        "buckling_branch", AT(compute.solid.buckling_branch), branches, "fibres",
+        "side that film and fibres are on where a film without tension may buckle to "
+        "either one; any: the one that follows from 0 V; of devices made of `plies` fibres is "
+        "the side of +z",
+        .alias = "side", .default_text = "any"),
+    DEA_CHOICE_ROW("path", AT(compute.solid.path), dea_no_yes, "yes",
+                   "whether study path follows model 3d too: all of its equilibrium path from 0 V "
+                   "to the highest voltage, through limit points and bifurcations",
+                   .default_text = "no"),
+};
+
+static const struct dea_record solid_record = {"solid", "mesh of model 3d", solid_fields,
+                                               COUNT(solid_fields)};
+
+static const char *const motions[] = {"largest", "x", "y", "z", "turn_x", "turn_y", "turn_z", NULL};
+
+static const struct dea_field reduced_fields[] = {
+    DEA_LABEL_ROW("file", AT(compute.reduced.file), "cone.json",
+                  "model that dea reduce-order has written; without it a run makes its own",
+                  .absent_text = "none"),
+    DEA_LABEL_ROW("monitor", AT(compute.reduced.monitor), "hub",
+                  "what moves as the coordinate: a point, a shape or a body",
+                  .absent_text = "the first, or of a disc its fibre tip or the electrode's edge"),
+    DEA_CHOICE_ROW("motion", AT(compute.reduced.motion), motions, "z",
+                   "along or about which axis; the largest: of its displacements at the highest "
+                   "voltage",
+                   .default_text = "largest"),
+    DEA_NUMBER_ROW("voltage", AT(compute.reduced.voltage_V), "V", "5 kV",
+                   "highest voltage of its range", .above_min = true, .max = 1e6,
+                   .absent_text = "the highest of the sweep"),
+    DEA_NUMBER_ROW("force", AT(compute.reduced.force), "N", "50 mN",
+                   "force along the coordinate, to either side, of its range (of a turn 1 N stands "
+                   "for 1 N m)",
+                   .above_min = true,
+                   .absent_text = "what moves the coordinate as far as the voltage"),
+    DEA_INTEGER_ROW("voltages", AT(compute.reduced.voltages), "17",
+                    "voltages that model 3d computes, 1 more than a multiple of 4", .min = 5,
+                    .max = 65, .absent_text = "5, and 9 where these are not enough"),
+    DEA_INTEGER_ROW("forces", AT(compute.reduced.forces), "9", "forces at each, the same", .min = 5,
+                    .max = 17, .default_text = "5"),
+    DEA_NUMBER_ROW("air", AT(compute.reduced.air_kg_per_m3), "kg/m^3", "1.2 kg/m^3",
+                   "density of the gas on both sides of the film, which moves with it as in a wide "
+                   "rigid wall; 0: vacuum, as in model 3d",
+                   .max = 100, .default_text = "0 kg/m^3"),
+};
+
+static const struct dea_record reduced_record = {"reduced", "model reduced", reduced_fields,
+                                                 COUNT(reduced_fields)};
+
+// Compute -----------------------------------------------------------------------------------------
+
+static const struct dea_field compare_fields[] = {
+    DEA_LABEL_ROW("name", offsetof(struct dea_design_variant, name), "eight fibres",
+                  "name in figures and tables; an item with nothing else names the design itself",
+                  .required = true),
+    DEA_LABEL_ROW("file", offsetof(struct dea_design_variant, file), "frdea-8.yaml",
+                  "design file to be compared with; its path counts from the folder of this one",
+                  .absent_text = "this file"),
+    DEA_FIELD_ROW(
+        SECTION, "set", offsetof(struct dea_design_variant, set), .absent_text = "nothing",
+        .doc = "keys of a design file with other values, as with --set; null takes a key away",
+        .example = "{fibres.count: 8}"),
+};
+
+static const struct dea_record compare_record = {
+    "compare", "a design that this one is compared with", compare_fields, COUNT(compare_fields)};
+
 static const struct dea_field voltage_fields[] = {
     DEA_NUMBER_ROW("from", RAW(from_V), "V", "0 kV", "first voltage", .max = 1e6,
                    .default_text = "0 kV", .group = VOLTAGE_GROUP, .option = 1),
@@ -96,12 +314,11 @@ static const struct dea_field compute_fields[] = {
                   DEA_LIST(1, DEA_DESIGN_MODELS_MAX, struct dea_label, AT(compute.model_count))),
     DEA_FIELD_ROW(RECORD, "voltage", 0, .record = &voltage_record, .doc = "voltages of the sweep"),
     DEA_FIELD_ROW(RECORD, "path", 0, .record = &path_record, .doc = "equilibrium path"),
-    DEA_FIELD_ROW(RECORD, "solid", 0, .record = &dea_solid_record, .doc = "mesh of model 3d"),
-    DEA_FIELD_ROW(RECORD, "reduced", 0, .record = &dea_reduced_record,
+    DEA_FIELD_ROW(RECORD, "solid", 0, .record = &solid_record, .doc = "mesh of model 3d"),
+    DEA_FIELD_ROW(RECORD, "reduced", 0, .record = &reduced_record,
                   .doc = "range of model reduced, a fast model made by model 3d"),
     DEA_FIELD_ROW(
-        RECORD, "compare", AT(compute.compare), .record = &dea_compare_record,
-        .absent_text = "none",
+        RECORD, "compare", AT(compute.compare), .record = &compare_record, .absent_text = "none",
         .doc = "study compare-design: other designs in one figure with this one",
         DEA_LIST(1, DEA_DESIGN_VARIANTS_MAX, struct dea_design_variant, AT(compute.compare_count))),
     DEA_CHOICE_ROW(
@@ -169,8 +386,8 @@ static const struct dea_field design_fields[] = {
                   .doc = "the frame that holds the pre-stretch"),
     DEA_FIELD_ROW(RECORD, "electrodes", 0, .record = &electrodes_record, .required = true,
                   .doc = "a disc on both faces of the film"),
-    DEA_FIELD_ROW(RECORD, "fibres", 0, .record = &dea_fibres_record,
-                  .present_offset = AT(has_fibres), .absent_text = "none",
+    DEA_FIELD_ROW(RECORD, "fibres", 0, .record = &fibres_record, .present_offset = AT(has_fibres),
+                  .absent_text = "none",
                   .doc = "radial fibres on the upper face; without this section there are none"),
     DEA_CHOICE_ROW("gravity", AT(gravity), gravities, "fibres_up",
                    "weight, and which way the side of the fibres faces (3d); without fibres: +z",
@@ -179,7 +396,7 @@ static const struct dea_field design_fields[] = {
                    "temperature of the device: chooses among sets of a material that were measured "
                    "at different ones, and shifts the times of branches (wlf)",
                    .min = 100, .max = 600, .absent_text = "unknown"),
-    DEA_FIELD_ROW(RECORD, "drive", 0, .record = &dea_drive_record,
+    DEA_FIELD_ROW(RECORD, "drive", 0, .record = &drive_record,
                   .doc = "waveform and supply for what happens in time"),
     DEA_FIELD_ROW(
         RECORD, "materials", RAW(materials), .record = &dea_material_inline_record,

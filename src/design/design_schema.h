@@ -23,11 +23,8 @@ struct dea_design_raw {
   struct dea_parts_raw parts; // of the general form
 };
 
-/* Parts of the table that have files of their own; base as below. */
-extern const struct dea_record dea_fibres_record, dea_solid_record, dea_reduced_record,
-    dea_fabrication_record, dea_fabrication_general_record, dea_drive_record;
-/* base: a struct dea_design_variant. */
-extern const struct dea_record dea_compare_record;
+/* Parts of the table that have a file of their own; base as below. */
+extern const struct dea_record dea_fabrication_record, dea_fabrication_general_record;
 
 enum { DEA_DESIGN_TOP_MAX = 40, DEA_DESIGN_COMPUTE_MAX = 32 };
 
@@ -44,3 +41,8 @@ struct dea_design_schema {
 };
 void dea_design_schema_fill(const struct dea_design_sections *sections,
                             struct dea_design_schema *out);
+
+/* Moves the materials that stand in one line at `material` of film, electrodes, fibres and plies to
+ * the list `materials`, under the name "film.material" or "plies.NAME.material". Findings for what
+ * is wrong in them; DEA_E_MEMORY. */
+dea_status dea_material_lines_expand(struct dea_context *ctx, struct dea_yaml *yaml);

@@ -1,6 +1,6 @@
 /* A material in one line, {yeoh: [120 kPa, 5 kPa, 1 kPa], permittivity: 2.9, density: 1.1 g/cm^3},
  * becomes an item of `materials` that its user names, so that all else is as for those. */
-#include "design/read.h"
+#include "design/design_schema.h"
 
 #include "base/text.h"
 

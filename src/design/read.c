@@ -1,10 +1,20 @@
-#include "design/read.h"
+#include "base/file.h"
 #include "base/file_kind.h"
 #include "design/design_schema.h"
+#include "design/design_sections.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* A design file's text with what the command line overrides. */
+struct source {
+  const struct dea_design_sections *sections;
+  const char *name, *bytes;
+  size_t length;
+  const struct dea_override *overrides; // [override_count]
+  size_t override_count;
+};
 
 /* Points of a sweep from `from` to `to`; 0 when the step does not fit or there are too many. */
 static size_t sweep_count(double from, double to, double step)
@@ -224,7 +234,7 @@ static dea_status read_materials(const struct dea_reader *reader, struct dea_des
 }
 
 /* The document of a source with all that changes it. */
-static dea_status parse(struct dea_context *ctx, const struct dea_design_source *source,
+static dea_status parse(struct dea_context *ctx, const struct source *source,
                         const struct dea_node *changes, struct dea_yaml **out)
 {
   DEA_TRY(ctx, dea_yaml_parse(ctx, source->name, source->bytes, source->length, out));
@@ -246,7 +256,7 @@ static dea_status parse(struct dea_context *ctx, const struct dea_design_source 
 }
 
 /* Fills *raw from text; all of its owned members are in raw->design, also after a failure. */
-static dea_status read_raw(struct dea_context *ctx, const struct dea_design_source *source,
+static dea_status read_raw(struct dea_context *ctx, const struct source *source,
                            const struct dea_node *changes, struct dea_design_raw *raw)
 {
   struct dea_design *design = &raw->design;
@@ -305,8 +315,10 @@ static void clear_design(struct dea_context *ctx, struct dea_design *design)
   dea_yaml_destroy(ctx, design->document);
 }
 
-dea_status dea_design_read_source(struct dea_context *ctx, const struct dea_design_source *source,
-                                  const struct dea_node *changes, struct dea_design **out)
+/* Reads a design with the values of a section in the place of its own (keys may be dotted; NULL: no
+ * changes). The designs that it compares itself with are not read. changes: outlives the design. */
+static dea_status read_source(struct dea_context *ctx, const struct source *source,
+                              const struct dea_node *changes, struct dea_design **out)
 {
   *out = NULL;
   struct dea_design_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
@@ -323,6 +335,128 @@ dea_status dea_design_read_source(struct dea_context *ctx, const struct dea_desi
   }
   dea_free(ctx, raw);
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+// Designs beside it -------------------------------------------------------------------------------
+
+/* Place of what is wrong with a variant. The command line has none of its own (a line counts from
+ * 1): there it is the design file that was named. */
+static struct dea_location place_of(struct dea_context *ctx,
+                                    const struct dea_design_variant *variant,
+                                    const struct dea_location *own)
+{
+  const char *file = own->line == 0 && variant->file.origin != DEA_ABSENT
+                         ? dea_intern(ctx, variant->file.text)
+                         : NULL;
+  return file != NULL ? (struct dea_location){file, 0, 0} : *own;
+}
+
+/* Another design, which compares itself with none. */
+static dea_status read_other(struct dea_context *ctx, const struct source *source,
+                             struct dea_design_variant *variant)
+{
+  DEA_TRY(ctx, read_source(ctx, source, variant->set, &variant->design));
+  variant->design->compute.compare_count = 0;
+  return DEA_OK;
+}
+
+static dea_status read_other_file(struct dea_context *ctx, const struct source *source,
+                                  struct dea_design_variant *variant)
+{
+  char *bytes = NULL, *path = dea_path_beside(ctx, source->name, variant->file.text);
+  struct source other = *source;
+  DEA_TRY_MEMORY(path != NULL);
+  dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &bytes, &other.length);
+  if (status == DEA_E_IO) {
+    const bool in_file = variant->file.location.line > 0; // else said as of a first file
+    status = dea_finding_add(ctx, DEA_ERROR,
+                             in_file ? variant->file.location : (struct dea_location){"", 0, 0},
+                             "%s", dea_context_message(ctx));
+    status = status == DEA_OK ? DEA_E_DESIGN : status;
+  } else if (status == DEA_OK) {
+    other.name = path;
+    other.bytes = bytes;
+    status = read_other(ctx, &other, variant);
+  }
+  dea_free(ctx, bytes);
+  dea_free(ctx, path);
+  return status;
+}
+
+static dea_status check_name(struct dea_context *ctx, const struct dea_design *design, size_t i)
+{
+  const struct dea_label *name = &design->compute.compare[i].name;
+  const struct dea_location place = place_of(ctx, &design->compute.compare[i], &name->location);
+  if (strlen(name->text) >= DEA_NAME_SIZE || strchr(name->text, '/') != NULL) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "name: at most %d characters, and no '/'",
+                                 DEA_NAME_SIZE - 1));
+  }
+  for (size_t k = 0; k < i && name->text[0] != '\0'; k++) {
+    if (strcmp(design->compute.compare[k].name.text, name->text) == 0) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+                                   "the name '%.60s' stands twice among the designs", name->text));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Reads the designs that a design compares itself with. DEA_E_DESIGN after all were tried. */
+static dea_status read_variants(struct dea_context *ctx, const struct source *source,
+                                struct dea_design *design)
+{
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  for (size_t i = 0; i < design->compute.compare_count; i++) {
+    struct dea_design_variant *variant = &design->compute.compare[i];
+    DEA_TRY(ctx, check_name(ctx, design, i));
+    dea_status status = DEA_OK;
+    if (variant->file.origin != DEA_ABSENT) {
+      status = read_other_file(ctx, source, variant);
+    } else if (variant->set != NULL) {
+      status = read_other(ctx, source, variant);
+    }
+    if (status != DEA_OK && status != DEA_E_DESIGN) {
+      return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+    }
+  }
+  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
+  if (found > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "the designs that '%s' compares have %zu error%s",
+                    source->name, found, found > 1 ? "s" : "");
+  }
+  return DEA_OK;
+}
+
+// All ---------------------------------------------------------------------------------------------
+
+dea_status dea_design_read_memory_with(struct dea_context *ctx,
+                                       const struct dea_design_sections *sections, const char *name,
+                                       const char *bytes, size_t length,
+                                       const struct dea_override *overrides, size_t override_count,
+                                       struct dea_design **out)
+{
+  const struct source source = {sections, name, bytes, length, overrides, override_count};
+  DEA_TRY(ctx, read_source(ctx, &source, NULL, out));
+  dea_status status = read_variants(ctx, &source, *out);
+  if (status != DEA_OK) {
+    dea_design_destroy(ctx, *out);
+    *out = NULL;
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_design_read_with(struct dea_context *ctx, const struct dea_design_sections *sections,
+                                const char *file, const struct dea_override *overrides,
+                                size_t override_count, struct dea_design **out)
+{
+  char *bytes;
+  size_t length;
+  *out = NULL;
+  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &bytes, &length));
+  dea_status status = dea_design_read_memory_with(ctx, sections, file, bytes, length, overrides,
+                                                  override_count, out);
+  dea_free(ctx, bytes);
+  return status;
 }
 
 const struct dea_settings *dea_design_settings(const struct dea_design *design,

@@ -1,20 +1,11 @@
 #include "device/generator.h"
 
-static const struct dea_generator *const generators[] = {
-#define GENERATOR_ROW(name) &dea_generator_##name,
-    DEA_GENERATOR_LIST(GENERATOR_ROW)
-#undef GENERATOR_ROW
-};
-
 static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
                        struct dea_device *device)
 {
-  size_t errors = dea_finding_count(ctx, DEA_ERROR), i = 0;
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): the last one takes all
-  while (!generators[i]->takes(design)) {
-    i++;
-  }
-  DEA_TRY(ctx, generators[i]->fill(ctx, design, device));
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  DEA_TRY(ctx,
+          (design->parts != NULL ? dea_generator_parts : dea_generator_disc)(ctx, design, device));
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {
     return dea_fail(ctx, DEA_E_DESIGN, "'%s' has %zu error%s", design->file, found,

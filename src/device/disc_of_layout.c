@@ -2,7 +2,7 @@
 #include "base/text.h"
 #include "device/device.h"
 #include "device/disc_layout.h"
-#include "material/material_identity.h"
+#include "device/identity.h"
 
 #include <math.h>
 #include <string.h>

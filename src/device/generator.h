@@ -1,30 +1,39 @@
-/* Generators: what makes a device of a design. A new one is a file generator_<name>.c and a line
- * here. */
+/* Generators: what makes a device of a design, a file generator_<name>.c each. */
 #pragma once
 
 #include "device/device.h"
+#include "device/layout.h"
 
-struct dea_generator {
-  const char *name;
-  /* Whether it is the one for a design. */
-  bool (*takes)(const struct dea_design *design);
-  /* Fills a zeroed device; what is wrong becomes findings, and the status is DEA_OK also then. What
-   * it made is freed with the device. */
-  dea_status (*fill)(struct dea_context *ctx, const struct dea_design *design,
-                     struct dea_device *device);
-};
-
-// X(name): `const struct dea_generator dea_generator_<name>`; the first that takes a design makes
-// it
-#define DEA_GENERATOR_LIST(X)                                                                      \
-  X(parts)                                                                                         \
-  X(disc)
-
-#define DEA_GENERATOR_DECLARE(name) extern const struct dea_generator dea_generator_##name;
-DEA_GENERATOR_LIST(DEA_GENERATOR_DECLARE)
-#undef DEA_GENERATOR_DECLARE
+/* Fill a zeroed device of a design of plies, and of one of the short form; what is wrong becomes
+ * findings, and the status is DEA_OK also then. What they made is freed with the device. */
+dea_status dea_generator_parts(struct dea_context *ctx, const struct dea_design *design,
+                               struct dea_device *device);
+dea_status dea_generator_disc(struct dea_context *ctx, const struct dea_design *design,
+                              struct dea_device *device);
 
 /* ---- for generators ---- */
+
+/* Names of parts of one kind: labels in a list of structs. */
+struct dea_part_names {
+  const char *what;  // "shape"
+  const char *first; // the label of the first one
+  size_t count, stride;
+};
+#define DEA_PART_NAMES(what, items, count)                                                         \
+  {                                                                                                \
+    what, (const char *)&(items)->name, count, sizeof *(items)                                     \
+  }
+
+/* Number of the part with a name; DEA_LAYOUT_NONE after a finding at `location` that says which is
+ * nearest, or which there are. */
+dea_status dea_part_find(struct dea_context *ctx, const struct dea_part_names *names,
+                         const char *name, struct dea_location location, size_t *out);
+
+/* Makes a region of each shape, in their order; the list is the layout's, and its length is set.
+ * What is wrong is a finding at its place; a shape that could not be made, or is made of such a
+ * one, leaves an empty region. */
+dea_status dea_shape_regions_build(struct dea_context *ctx, const struct dea_design *design,
+                                   struct dea_layout *layout);
 
 /* Resolves the name of a material: the design's own first, then the catalogue. An unknown name or
  * set, or an error in the material's file, is a finding and DEA_E_DESIGN. */

@@ -110,8 +110,8 @@ static void add_locations(const struct dea_design *design, struct dea_layout *la
   }
 }
 
-static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
-                       struct dea_device *device)
+dea_status dea_generator_disc(struct dea_context *ctx, const struct dea_design *design,
+                              struct dea_device *device)
 {
   typedef dea_status (*build_fn)(struct dea_context *, const struct dea_design *,
                                  struct dea_device *);
@@ -138,11 +138,3 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   add_locations(design, device->layout);
   return dea_layout_find_symmetry(ctx, device->layout);
 }
-
-static bool takes(const struct dea_design *design)
-{
-  (void)design;
-  return true;
-}
-
-const struct dea_generator dea_generator_disc = {.name = "disc", .takes = takes, .fill = fill};

@@ -2,8 +2,6 @@
 #include "device/generator.h"
 #include "device/geometry.h"
 #include "device/layout_check.h"
-#include "device/part_names.h"
-#include "device/shape_regions.h"
 #include "material/plane.h"
 
 #include <math.h>
@@ -557,13 +555,8 @@ static dea_status add_monitors(struct maker *m)
 
 // All --------------------------------------------------------------------------------------------
 
-static bool takes(const struct dea_design *design)
-{
-  return design->parts != NULL;
-}
-
-static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
-                       struct dea_device *device)
+dea_status dea_generator_parts(struct dea_context *ctx, const struct dea_design *design,
+                               struct dea_device *device)
 {
   typedef dea_status (*add_fn)(struct maker *);
   static const add_fn parts[] = {add_plies,     add_channels, add_electrodes,
@@ -593,5 +586,3 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   DEA_TRY(ctx, dea_geometry_fit_studies(ctx, design, device));
   return dea_layout_find_symmetry(ctx, m.out);
 }
-
-const struct dea_generator dea_generator_parts = {.name = "parts", .takes = takes, .fill = fill};

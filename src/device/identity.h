@@ -12,3 +12,6 @@ bool dea_identity_has(const char *path);
  * out too; NULL: none. */
 void dea_device_identity(const struct dea_design *design, const struct dea_device *device,
                          const char *but, struct dea_text *out);
+
+/* Adds all numbers of a material that models see, without the uncertainties, and no names. */
+void dea_material_identity(const struct dea_material *material, struct dea_text *out);

@@ -8,8 +8,7 @@
 
 /* Parts of an area that rounding may leave. */
 static const double rounding = 1e-6;
-enum { SAMPLES = 16 };                     // of a piece of a contour
-static const double overhang_share = 1e-3; // of a ply's size: what lies over the edge on purpose
+enum { SAMPLES = 16 }; // of a piece of a contour
 
 static const struct dea_region *region_of(const struct dea_layout *l, size_t number)
 {
@@ -325,77 +324,6 @@ static dea_status check_plies(struct dea_context *ctx, const struct dea_layout *
   return status;
 }
 
-/* How far regions reach in each direction [m]. */
-enum { DIRECTIONS = 72 };
-struct reach {
-  double along[DIRECTIONS][2], to_m[DIRECTIONS];
-};
-
-static double direction(int k)
-{
-  return 2 * acos(-1.0) * k / DIRECTIONS;
-}
-
-static void reach_out(const struct dea_piece *piece, struct reach *r)
-{
-  for (int k = 0; k < DIRECTIONS; k++) {
-    const double *along = r->along[k], *at = piece->from;
-    const bool faces = piece->arc && dea_piece_faces(piece, direction(k));
-    at = faces ? piece->centre : at;
-    r->to_m[k] =
-        fmax(r->to_m[k], at[0] * along[0] + at[1] * along[1] + (faces ? piece->radius_m : 0));
-  }
-}
-
-/* How far a region reaches beyond the convex hull of those before, at most [m]; it is among them
- * from then on. */
-static double overhang_m(struct reach *before, const struct dea_region *region)
-{
-  struct reach own = *before;
-  double most = 0;
-  for (int k = 0; k < DIRECTIONS; k++) {
-    own.to_m[k] = -INFINITY;
-  }
-  for (size_t i = 0; i < region->contour_count; i++) {
-    const struct dea_contour contour = dea_region_contour(region, i);
-    for (size_t p = 0; p < dea_contour_pieces(&contour); p++) {
-      const struct dea_piece piece = dea_contour_piece(&contour, p);
-      reach_out(&piece, &own);
-    }
-  }
-  for (int k = 0; k < DIRECTIONS; k++) {
-    most = fmax(most, own.to_m[k] - before->to_m[k]);
-    before->to_m[k] = fmax(before->to_m[k], own.to_m[k]);
-  }
-  return most;
-}
-
-/* A film may span what is open below it; what reaches beyond all that is below hangs in the air. */
-static dea_status check_overhang(struct dea_context *ctx, const struct dea_layout *l)
-{
-  struct reach below;
-  for (int k = 0; k < DIRECTIONS; k++) {
-    below.along[k][0] = cos(direction(k));
-    below.along[k][1] = sin(direction(k));
-    below.to_m[k] = -INFINITY;
-  }
-  for (size_t i = 0; i < l->ply_count; i++) {
-    const struct dea_layout_ply *ply = &l->plies[i];
-    const struct dea_region *region = region_of(l, ply->region);
-    double beyond_m = overhang_m(&below, region);
-    bool lies_on = false, beyond = i > 0 && beyond_m > overhang_share * dea_region_size_m(region);
-    for (size_t j = 0; j < i && beyond && !lies_on; j++) {
-      lies_on = dea_layout_overlap_m2(l, ply->region, l->plies[j].region) > 0;
-    }
-    if (lies_on) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, ply->location,
-                                   "the ply '%s' overhangs the plies below it by up to %.3g mm",
-                                   ply->name, 1e3 * beyond_m));
-    }
-  }
-  return DEA_OK;
-}
-
 static dea_status check_supports(struct dea_context *ctx, const struct dea_layout *l)
 {
   for (size_t i = 0; i < l->support_count; i++) {
@@ -643,9 +571,8 @@ dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *la
                             double highest_V)
 {
   typedef dea_status (*check_fn)(struct dea_context *, const struct dea_layout *);
-  static const check_fn checks[] = {check_plies,     check_overhang,   check_supports,
-                                    check_bodies,    check_directions, check_held,
-                                    check_pressures, check_contacts,   check_monitors};
+  static const check_fn checks[] = {check_plies, check_supports,  check_bodies,   check_directions,
+                                    check_held,  check_pressures, check_contacts, check_monitors};
   DEA_TRY(ctx, check_electrodes(ctx, layout, highest_V));
   for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
     DEA_TRY(ctx, checks[i](ctx, layout));

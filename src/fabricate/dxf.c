@@ -4,8 +4,8 @@
  * and B, their blocks C to F, dictionaries 10 and 11, entries of tables from 12. */
 #include "fabricate/dxf.h"
 
+#include "base/file.h"
 #include "base/version.h"
-#include "fabricate/labels.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -223,12 +223,15 @@ static void write_path(struct file *file, const struct dea_part_contour *contour
 /* Letters beyond ASCII are written as \\U+XXXX. */
 static void add_escaped(struct dea_text *out, const char *text)
 {
-  for (unsigned code; (code = dea_letter_next(&text)) != 0;) {
+  while (*text != '\0') {
+    unsigned code;
+    const size_t length = dea_letter_read(text, &code);
     if (code < 0x80) {
-      dea_text_add(out, "%c", (char)code);
+      dea_text_add(out, "%c", dea_letter_is_control(code) ? ' ' : (char)code);
     } else {
       dea_text_add(out, code <= 0xffff ? "\\U+%04X" : "?", code);
     }
+    text += length > 0 ? length : 1;
   }
 }
 
@@ -268,6 +271,24 @@ static dea_status write_copy(struct file *file, const struct dea_workshop *works
   return DEA_OK;
 }
 
+void dea_sheet_labels(const struct dea_workshop *workshop, size_t index, struct dea_text *out)
+{
+  const struct dea_part *part = &workshop->part[index];
+  int copies = workshop->layout[index].count;
+  dea_text_add(out, "%.80s: %s; %s; lengths of the %s film in mm; ",
+               dea_path_name(workshop->plan.design->file), part->title, part->seen,
+               dea_part_film_name(part));
+  if (part->paper) {
+    dea_text_add(out, "not to be cut");
+  } else {
+    if (part->quantity > 1) {
+      dea_text_add(out, "to be cut %zu times; ", part->quantity);
+    }
+    dea_text_add(out, "%d cop%s, kerf of %.4g mm taken into account", copies,
+                 copies > 1 ? "ies" : "y", 1e3 * workshop->plan.kerf_m);
+  }
+}
+
 static dea_status write_entities(struct file *file, const struct dea_workshop *workshop,
                                  size_t index)
 {
@@ -283,7 +304,7 @@ static dea_status write_entities(struct file *file, const struct dea_workshop *w
   groups(file, "0 SECTION|2 ENTITIES|");
   write_path(file, &edge, corners, 4, origin);
   dea_sheet_labels(workshop, index, &words);
-  double height = dea_sheet_labels_height(layout);
+  const double height = fmin(2.5e-3, layout->width_m / 130); // so that they fit
   write_words(file, DEA_LAYER_NOTE, 2e-3, -2 * height, height, false, dea_text_get(&words));
   dea_status status = words.failed ? DEA_E_MEMORY : DEA_OK;
   dea_text_free(&words);

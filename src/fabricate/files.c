@@ -1,4 +1,3 @@
-#define _POSIX_C_SOURCE 200809L // unlink
 #include "fabricate/files.h"
 
 #include "base/file.h"
@@ -10,10 +9,8 @@
 #include "fabricate/process.h"
 #include "fabricate/svg.h"
 
-#include <dirent.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { NAME_SIZE = 64 };
 
@@ -79,78 +76,12 @@ static dea_status refuse_existing(void *user, const char *name)
   return dea_path_refuse(location->ctx, location->directory, name);
 }
 
-/* Whether a file's name is that of a sheet of this workshop, or of any: stem its length without the
- * ending. */
-static bool is_sheet(const struct dea_workshop *workshop, const char *name, size_t stem)
-{
-  bool found = stem == strlen(LAYOUT_DXF) - 4 && strncmp(name, LAYOUT_DXF, stem) == 0;
-  for (size_t i = 0; i < workshop->count; i++) {
-    const char *own = workshop->part[i].name;
-    found = found || (strlen(own) == stem && strncmp(own, name, stem) == 0);
-  }
-  return found;
-}
-
-static bool may_be_sheet(const char *name)
-{
-  static const char *const starts[] = {"film.",    "frame.", "template.", "fibres.", "layout.",
-                                       "stencil-", "blank-", "ply-",      "body-"};
-  bool found = false;
-  for (size_t i = 0; i < sizeof starts / sizeof starts[0]; i++) {
-    found = found || strncmp(name, starts[i], strlen(starts[i])) == 0;
-  }
-  return found;
-}
-
-/* Removes a DXF of ours and the SVG beside it. */
-static dea_status forget_sheet(struct dea_context *ctx, const char *directory, const char *dxf)
-{
-  static const char ours[] = "999\nlibdea ";
-  char start[sizeof ours] = "";
-  char *path = dea_path_join(ctx, directory, dxf);
-  DEA_TRY_MEMORY(path != NULL);
-  size_t length;
-  dea_file_head(path, start, sizeof ours - 1, &length);
-  if (strcmp(start, ours) == 0) {
-    unlink(path);
-    // NOLINTNEXTLINE(bugprone-not-null-terminated-result): its end stays
-    memcpy(path + strlen(path) - 3, "svg", 3);
-    unlink(path); // one that is not there is fine
-  }
-  dea_free(ctx, path);
-  return DEA_OK;
-}
-
-/* Removes the sheets of parts that an older design had and this one has not: they would be taken
- * for its own. */
-static dea_status forget_sheets(struct dea_context *ctx, const struct dea_workshop *workshop,
-                                const char *directory)
-{
-  DIR *all = opendir(directory);
-  dea_status status = DEA_OK;
-  const struct dirent *entry = all != NULL ? readdir(all) : NULL;
-  for (; entry != NULL && status == DEA_OK; entry = readdir(all)) {
-    size_t length = strlen(entry->d_name), stem = length > 4 ? length - 4 : 0;
-    if (strcmp(entry->d_name + stem, ".dxf") == 0 && may_be_sheet(entry->d_name) &&
-        !is_sheet(workshop, entry->d_name, stem)) {
-      status = forget_sheet(ctx, directory, entry->d_name);
-    }
-  }
-  if (all != NULL) {
-    closedir(all);
-  }
-  return status;
-}
-
 dea_status dea_workshop_prepare(struct dea_context *ctx, const struct dea_workshop *workshop,
                                 const char *directory, const struct dea_workshop_options *options)
 {
   struct location location = {ctx, directory};
   if (!options->force) {
     DEA_TRY(ctx, dea_workshop_files(workshop, options, refuse_existing, &location));
-  }
-  if (options->force && !options->drawing_only) {
-    DEA_TRY(ctx, forget_sheets(ctx, workshop, directory));
   }
   return dea_folder_create(ctx, directory);
 }
@@ -201,26 +132,24 @@ static dea_status write_drawing(struct dea_context *ctx, const struct dea_canvas
 
 /* With the drawing of the actuator in it. */
 static dea_status write_process(struct dea_context *ctx, const struct dea_canvas_type *type,
-                                const struct dea_workshop *workshop, const char *directory,
-                                bool sensitivity)
+                                const struct dea_workshop *workshop, const char *directory)
 {
   struct dea_canvas *canvas = NULL;
   const char *bytes = NULL;
   size_t length = 0;
-  struct dea_text svg = {.ctx = ctx};
-  struct dea_document document = {.html = {.ctx = ctx}};
+  struct dea_text svg = {.ctx = ctx}, html = {.ctx = ctx};
   dea_status status = draw(ctx, type, workshop, &drawings[0], &canvas, &bytes, &length);
   if (status == DEA_OK) {
     dea_text_add(&svg, "%.*s", (int)length, bytes);
-    document.drawing = strstr(dea_text_get(&svg), "<svg"); // without the XML declaration
-    status = svg.failed ? DEA_E_MEMORY : dea_process_write(ctx, workshop, sensitivity, &document);
+    const char *drawing = strstr(dea_text_get(&svg), "<svg"); // without the XML declaration
+    status = svg.failed ? DEA_E_MEMORY : dea_process_write(ctx, workshop, drawing, &html);
   }
   if (status == DEA_OK) {
-    status = dea_text_write(ctx, &document.html, directory, PROCESS_HTML);
+    status = dea_text_write(ctx, &html, directory, PROCESS_HTML);
   }
   type->destroy(canvas);
   dea_text_free(&svg);
-  dea_text_free(&document.html);
+  dea_text_free(&html);
   return status;
 }
 
@@ -234,9 +163,7 @@ static dea_status write_drawings(struct dea_context *ctx, const struct dea_works
       DEA_TRY(ctx, write_drawing(ctx, type, workshop, directory, &drawings[i]));
     }
   }
-  return options->drawing_only
-             ? DEA_OK
-             : write_process(ctx, type, workshop, directory, options->sensitivity);
+  return options->drawing_only ? DEA_OK : write_process(ctx, type, workshop, directory);
 }
 
 static dea_status write_layout(struct dea_context *ctx, const struct dea_workshop *workshop,

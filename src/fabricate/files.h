@@ -6,7 +6,6 @@
 struct dea_workshop_options {
   bool force;        // replace files that are there
   bool drawing_only; // drawing.* and nothing else
-  bool sensitivity;  // effects of tolerances also of a device of plies, which takes its solution
 };
 
 /* To be asked first: DEA_E_IO when the folder holds a file of a name that would be written and

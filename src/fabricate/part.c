@@ -4,29 +4,12 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Room for one more item of an array; false when memory is short. */
-static bool reserve(struct dea_part *part, void **items, size_t size, size_t count,
-                    size_t *capacity)
-{
-  if (part->failed || count < *capacity) {
-    return !part->failed;
-  }
-  size_t more = *capacity > 0 ? 2 * *capacity : 32;
-  void *bigger = dea_resize(part->ctx, *items, more, size);
-  if (bigger == NULL) {
-    part->failed = true;
-    return false;
-  }
-  *items = bigger;
-  *capacity = more;
-  return true;
-}
-
 static void begin(struct dea_part *part, enum dea_layer layer, bool closed)
 {
-  void *items = part->contour;
-  if (reserve(part, &items, sizeof *part->contour, part->contour_count, &part->contour_room)) {
-    part->contour = items;
+  part->failed =
+      part->failed || dea_array_grow(part->ctx, &part->contour, part->contour_count,
+                                     &part->contour_room, sizeof *part->contour) != DEA_OK;
+  if (!part->failed) {
     part->contour[part->contour_count++] =
         (struct dea_part_contour){layer, closed, false, part->vertex_count, 0};
   }
@@ -35,9 +18,9 @@ static void begin(struct dea_part *part, enum dea_layer layer, bool closed)
 static void add_vertex(struct dea_part *part, double x, double y, double bulge,
                        struct dea_location location)
 {
-  void *items = part->vertex;
-  if (reserve(part, &items, sizeof *part->vertex, part->vertex_count, &part->vertex_room)) {
-    part->vertex = items;
+  part->failed = part->failed || dea_array_grow(part->ctx, &part->vertex, part->vertex_count,
+                                                &part->vertex_room, sizeof *part->vertex) != DEA_OK;
+  if (!part->failed) {
     part->vertex[part->vertex_count++] = (struct dea_vertex){x, y, bulge, location};
     part->contour[part->contour_count - 1].count++;
   }

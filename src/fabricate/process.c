@@ -2,22 +2,159 @@
 #include "fabricate/process.h"
 
 #include "base/file.h"
+#include "base/html.h"
+#include "device/geometry.h"
 #include "fabricate/layout_parts.h"
-#include "fabricate/tolerance_effect.h"
 #include "figures/dimensions.h"
+#include "study/design_gradient.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
+
+/* ---- the file: headings, notes, steps and tables as HTML that needs nothing else ---- */
+
+enum block_kind {
+  BLOCK_TITLE, // the first block
+  BLOCK_HEADING,
+  BLOCK_NOTE, // small
+  BLOCK_STEP, // numbered, with a box to tick
+  BLOCK_HEAD, // first row of a table
+  BLOCK_ROW,
+};
+
+struct document {
+  struct dea_text *html; // lent
+  const char *drawing;   // SVG text that is put after the second block
+  size_t count;          // of blocks so far
+  enum block_kind kind;  // of the last one
+  bool open;             // what encloses it stays open for the next one
+};
+
+static const char style[] =
+    "body{font:15px/1.5 'DejaVu Sans',Arial,sans-serif;color:#202020;max-width:60em;"
+    "margin:2em auto;padding:0 1em}h1{font-size:1.6em;border-bottom:1px solid #202020}"
+    "h2{font-size:1.15em;margin-top:1.8em}table{border-collapse:collapse;width:100%;font-size:."
+    "92em}"
+    "th,td{text-align:left;vertical-align:top;padding:.35em .6em;border-bottom:1px solid #d5d8dd}"
+    "th{border-bottom:1px solid #202020}.note{color:#6a6a6a;font-size:.88em}"
+    "ol{padding-left:2.4em}li{margin:.5em 0}svg{width:100%;height:auto}"
+    "@page{size:A4;margin:14mm}@media "
+    "print{body{margin:0;max-width:none;font-size:10.5px}svg{max-height:150mm}h2{break-after:avoid}"
+    "tr,li{break-inside:"
+    "avoid}}";
+
+/* How a kind of block begins and ends, and what encloses several of it; of cells, their tag. */
+static const struct {
+  const char *begin, *end, *enclosure, *cell;
+} looks[] = {
+    [BLOCK_TITLE] = {"<h1>", "</h1>\n", "", NULL},
+    [BLOCK_HEADING] = {"<h2>", "</h2>\n", "", NULL},
+    [BLOCK_NOTE] = {"<p class=\"note\">", "</p>\n", "", NULL},
+    [BLOCK_STEP] = {"<li>\xe2\x98\x90 ", "</li>\n", "ol", NULL},
+    [BLOCK_HEAD] = {"<tr>", "</tr>\n", "table", "th"},
+    [BLOCK_ROW] = {"<tr>", "</tr>\n", "table", "td"},
+};
+
+static void add_words(struct document *document, const char *format, va_list args)
+{
+  struct dea_text *html = document->html;
+  va_list again;
+  va_copy(again, args);
+  const int length = vsnprintf(NULL, 0, format, args);
+  char *text = html->failed ? NULL : dea_alloc(html->ctx, (size_t)length + 1, 1);
+  if (text != NULL) {
+    vsnprintf(text, (size_t)length + 1, format, again);
+    dea_html_text(html, text);
+  }
+  va_end(again);
+  html->failed = html->failed || text == NULL;
+  dea_free(html->ctx, text);
+}
+
+static void add_cell(struct document *document, const char *format, va_list args)
+{
+  const char *tag = looks[document->kind].cell;
+  if (tag != NULL) {
+    dea_text_add(document->html, "<%s>", tag);
+  }
+  add_words(document, format, args);
+  if (tag != NULL) {
+    dea_text_add(document->html, "</%s>", tag);
+  }
+}
+
+/* Ends the last block, and what encloses it unless it goes on. */
+static void end_block(struct document *document, const char *wanted, bool new_table)
+{
+  const char *open = looks[document->kind].enclosure;
+  dea_text_add(document->html, "%s", looks[document->kind].end);
+  if (document->count == 2) {
+    dea_text_add(document->html,
+                 "<div role=\"img\" aria-label=\"Drawing of the actuator\">%s</div>\n",
+                 document->drawing != NULL ? document->drawing : "");
+  }
+  document->open = open[0] != '\0' && strcmp(open, wanted) == 0 && !new_table;
+  if (open[0] != '\0' && !document->open) {
+    dea_text_add(document->html, "</%s>\n", open);
+  }
+}
+
+/* The title is that of the file too. */
+static void begin_file(struct document *document, const char *format, va_list args)
+{
+  va_list again;
+  va_copy(again, args);
+  dea_text_add(document->html,
+               "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+               "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+               "style-src 'unsafe-inline'\">\n"
+               "<meta name=\"viewport\" content=\"width=device-width\">\n<title>");
+  add_words(document, format, again);
+  dea_text_add(document->html, "</title>\n<style>%s</style>\n</head>\n<body>\n", style);
+  va_end(again);
+}
+
+/* Adds a block with one cell, or the next cell of a row (printf style). */
+DEA_PRINTF(3, 4)
+static void add_block(struct document *document, enum block_kind kind, const char *format, ...)
+{
+  const char *wanted = looks[kind].enclosure;
+  va_list args;
+  va_start(args, format);
+  if (document->count == 0) {
+    begin_file(document, format, args);
+  } else {
+    end_block(document, wanted, kind == BLOCK_HEAD);
+  }
+  if (wanted[0] != '\0' && !document->open) {
+    dea_text_add(document->html, "<%s>\n", wanted);
+  }
+  document->kind = kind;
+  document->count++;
+  dea_text_add(document->html, "%s", looks[kind].begin);
+  add_cell(document, format, args);
+  va_end(args);
+}
+
+DEA_PRINTF(2, 3)
+static void next_cell(struct document *document, const char *format, ...)
+{
+  va_list args;
+  va_start(args, format);
+  add_cell(document, format, args);
+  va_end(args);
+}
 
 enum { NUMBER = 32, WORDS = 256 };
 
 struct sheet {
   const struct dea_workshop *w;
   const struct dea_layout *layout;
-  struct dea_document *to;
+  struct document *to;
 };
 
 /* ---- amounts ---- */
@@ -117,22 +254,22 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
 static void add_material(const struct sheet *s, int copies, const char *item, const char *material,
                          double area_m2, double volume_m3, const char *note)
 {
-  struct dea_document *to = s->to;
-  dea_document_add(to, DEA_BLOCK_ROW, "%s", item);
-  dea_document_cell(to, "%s", material);
-  dea_document_cell(to,
-                    "%.4g\xc2\xa0"
-                    "cm\xc2\xb2",
-                    1e4 * area_m2);
-  dea_document_cell(to,
-                    "%.4g\xc2\xa0"
-                    "cm\xc2\xb2",
-                    1e4 * area_m2 * copies);
+  struct document *to = s->to;
+  add_block(to, BLOCK_ROW, "%s", item);
+  next_cell(to, "%s", material);
+  next_cell(to,
+            "%.4g\xc2\xa0"
+            "cm\xc2\xb2",
+            1e4 * area_m2);
+  next_cell(to,
+            "%.4g\xc2\xa0"
+            "cm\xc2\xb2",
+            1e4 * area_m2 * copies);
   if (isnan(volume_m3)) {
-    dea_document_cell(to, "%s", note);
+    next_cell(to, "%s", note);
   } else {
-    dea_document_cell(to, "%.4g\xc2\xa0mm\xc2\xb3 each, %.4g\xc2\xa0mm\xc2\xb3 in all. %s",
-                      1e9 * volume_m3, 1e9 * volume_m3 * copies, note);
+    next_cell(to, "%.4g\xc2\xa0mm\xc2\xb3 each, %.4g\xc2\xa0mm\xc2\xb3 in all. %s", 1e9 * volume_m3,
+              1e9 * volume_m3 * copies, note);
   }
 }
 
@@ -201,12 +338,12 @@ static void add_materials(const struct sheet *s)
   const struct dea_fab_plan *plan = &s->w->plan;
   struct dea_amounts a;
   dea_amounts_find(s->w, &a);
-  dea_document_add(s->to, DEA_BLOCK_HEADING, "Bill of materials");
-  dea_document_add(s->to, DEA_BLOCK_HEAD, "for");
-  dea_document_cell(s->to, "material");
-  dea_document_cell(s->to, "one");
-  dea_document_cell(s->to, "all %d", plan->copies);
-  dea_document_cell(s->to, "remarks");
+  add_block(s->to, BLOCK_HEADING, "Bill of materials");
+  add_block(s->to, BLOCK_HEAD, "for");
+  next_cell(s->to, "material");
+  next_cell(s->to, "one");
+  next_cell(s->to, "all %d", plan->copies);
+  next_cell(s->to, "remarks");
   for (size_t i = 0; i < l->ply_count; i++) {
     if (dea_ply_like(l, i) == i && dea_ply_is_cut(&l->plies[i])) {
       add_ply(s, i);
@@ -257,12 +394,12 @@ static void add_cutting(const struct sheet *s)
     }
     const struct dea_part *blank = dea_workshop_part(s->w, DEA_PART_BLANK, i);
     write_size(s, blank, size);
-    dea_document_add(s->to, DEA_BLOCK_STEP,
-                     "Cut %zu film%s of %s (%s) from %s, %.4g \xc2\xb5m thick, and draw the "
-                     "crosses of the grid, %s mm apart where the pre-stretch is the largest, and "
-                     "the three alignment marks%s.",
-                     count, count > 1 ? "s" : "", size, blank->name, ply->material.name,
-                     1e6 * dea_ply_layer_m(ply), grid, count > 1 ? " on each" : "");
+    add_block(s->to, BLOCK_STEP,
+              "Cut %zu film%s of %s (%s) from %s, %.4g \xc2\xb5m thick, and draw the "
+              "crosses of the grid, %s mm apart where the pre-stretch is the largest, and "
+              "the three alignment marks%s.",
+              count, count > 1 ? "s" : "", size, blank->name, ply->material.name,
+              1e6 * dea_ply_layer_m(ply), grid, count > 1 ? " on each" : "");
   }
 }
 
@@ -296,25 +433,25 @@ static void add_printing(const struct sheet *s)
     }
     write_channels(s, i / 2, top, channels);
     if (!top) {
-      dea_document_add(s->to, DEA_BLOCK_STEP,
-                       "Lay %s onto a PET carrier, its lower side up, so that its marks lie as in "
-                       "%s, and print the bottom through it: electrodes, leads, pads and marks in "
-                       "one go. Channel: %s. Cure at %.4g \xc2\xb0"
-                       "C for %.4g h.",
-                       ply, stencil->name, channels, celsius, hours);
+      add_block(s->to, BLOCK_STEP,
+                "Lay %s onto a PET carrier, its lower side up, so that its marks lie as in "
+                "%s, and print the bottom through it: electrodes, leads, pads and marks in "
+                "one go. Channel: %s. Cure at %.4g \xc2\xb0"
+                "C for %.4g h.",
+                ply, stencil->name, channels, celsius, hours);
       continue;
     }
     if (dea_workshop_part(s->w, DEA_PART_BOTTOM, i / 2) != NULL) {
-      dea_document_add(s->to, DEA_BLOCK_STEP,
-                       "Put a thin layer of silicone glue onto the bottom electrodes of %s, leave "
-                       "pads free, and transfer it onto a new PET carrier with them down.",
-                       ply);
+      add_block(s->to, BLOCK_STEP,
+                "Put a thin layer of silicone glue onto the bottom electrodes of %s, leave "
+                "pads free, and transfer it onto a new PET carrier with them down.",
+                ply);
     }
-    dea_document_add(s->to, DEA_BLOCK_STEP,
-                     "Print onto the top of %s through %s, its holes over the marks. Channel: %s. "
-                     "Cure at %.4g \xc2\xb0"
-                     "C for %.4g h.",
-                     ply, stencil->name, channels, celsius, hours);
+    add_block(s->to, BLOCK_STEP,
+              "Print onto the top of %s through %s, its holes over the marks. Channel: %s. "
+              "Cure at %.4g \xc2\xb0"
+              "C for %.4g h.",
+              ply, stencil->name, channels, celsius, hours);
   }
 }
 
@@ -341,11 +478,11 @@ static void add_layers(const struct sheet *s, size_t i)
     write_channels(s, i, top == 1, channels[top]);
   }
   if (dea_ply_layers(&s->layout->plies[i]) > 1) {
-    dea_document_add(s->to, DEA_BLOCK_STEP,
-                     "%s has %zu layers: do so with each of them, one on the other. Electrodes "
-                     "by turns from the bottom up: %s; %s.",
-                     s->layout->plies[i].name, dea_ply_layers(&s->layout->plies[i]), channels[0],
-                     channels[1]);
+    add_block(s->to, BLOCK_STEP,
+              "%s has %zu layers: do so with each of them, one on the other. Electrodes "
+              "by turns from the bottom up: %s; %s.",
+              s->layout->plies[i].name, dea_ply_layers(&s->layout->plies[i]), channels[0],
+              channels[1]);
   }
 }
 
@@ -360,19 +497,18 @@ static void add_tabs_step(const struct sheet *s, size_t i)
   dea_length_text(a, sizeof a, s->w->plan.piece_outer_m - d->fibre_tip_radius_m);
   dea_length_text(b, sizeof b, d->fibre_width_m);
   dea_length_text(c, sizeof c, d->fibre_tip_radius_m);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Cut %d %s with their holder (%s) from %s, %.4g \xc2\xb5m thick: %s mm long "
-                   "inside the frame, %s mm wide.",
-                   d->fibre_count, ply->name, name, ply->material.name, 1e6 * ply->thickness_m, a,
-                   b);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Put glue onto the %s%s, not onto holder and tabs; lay them onto what is there, "
-                   "holes over the marks. The tips then lie %s mm from the centre.",
-                   ply->name, anchored ? " and their anchors" : "", c);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Once the glue holds, cut the %d tabs%s and lift the "
-                   "holder off.",
-                   d->fibre_count, anchored ? "" : " at the outer ends");
+  add_block(s->to, BLOCK_STEP,
+            "Cut %d %s with their holder (%s) from %s, %.4g \xc2\xb5m thick: %s mm long "
+            "inside the frame, %s mm wide.",
+            d->fibre_count, ply->name, name, ply->material.name, 1e6 * ply->thickness_m, a, b);
+  add_block(s->to, BLOCK_STEP,
+            "Put glue onto the %s%s, not onto holder and tabs; lay them onto what is there, "
+            "holes over the marks. The tips then lie %s mm from the centre.",
+            ply->name, anchored ? " and their anchors" : "", c);
+  add_block(s->to, BLOCK_STEP,
+            "Once the glue holds, cut the %d tabs%s and lift the "
+            "holder off.",
+            d->fibre_count, anchored ? "" : " at the outer ends");
 }
 
 /* A film on the frame, or onto what is there. */
@@ -383,12 +519,12 @@ static void add_film_step(const struct sheet *s, size_t i, const char *where)
   char stretch[WORDS];
   write_stretch(ply, stretch);
   if (dea_ply_is_stretched(ply)) {
-    dea_document_add(s->to, DEA_BLOCK_STEP,
-                     "Stretch %s (%s) %s, until its grid and marks cover the template; it is then "
-                     "%.4g \xc2\xb5m thick%s.",
-                     ply->name, name, stretch, 1e6 * dea_ply_stretched_layer_m(ply), where);
+    add_block(s->to, BLOCK_STEP,
+              "Stretch %s (%s) %s, until its grid and marks cover the template; it is then "
+              "%.4g \xc2\xb5m thick%s.",
+              ply->name, name, stretch, 1e6 * dea_ply_stretched_layer_m(ply), where);
   } else {
-    dea_document_add(s->to, DEA_BLOCK_STEP, "Lay %s (%s) flat%s.", ply->name, name, where);
+    add_block(s->to, BLOCK_STEP, "Lay %s (%s) flat%s.", ply->name, name, where);
   }
 }
 
@@ -416,10 +552,9 @@ static void add_ply_step(const struct sheet *s, size_t i, enum order order)
   }
   const struct dea_part *part = dea_workshop_part(s->w, DEA_PART_OUTLINE, i);
   const size_t pieces = dea_part_pieces(part);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s.", ply->name,
-                   part->name, pieces, pieces > 1 ? "s on their carrier" : "", ply->material.name,
-                   1e6 * dea_ply_stretched_layer_m(ply), where);
+  add_block(s->to, BLOCK_STEP, "Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s.",
+            ply->name, part->name, pieces, pieces > 1 ? "s on their carrier" : "",
+            ply->material.name, 1e6 * dea_ply_stretched_layer_m(ply), where);
   add_layers(s, i);
 }
 
@@ -443,18 +578,18 @@ static void add_assembly(const struct sheet *s)
     }
   }
   for (size_t i = 0; i < l->body_count; i++) {
-    dea_document_add(s->to, DEA_BLOCK_STEP,
-                     "Cut %s (%s) from a plate that does not bend and bond it where the template "
-                     "shows it.",
-                     l->bodies[i].name, dea_workshop_part(s->w, DEA_PART_BODY, i)->name);
+    add_block(s->to, BLOCK_STEP,
+              "Cut %s (%s) from a plate that does not bend and bond it where the template "
+              "shows it.",
+              l->bodies[i].name, dea_workshop_part(s->w, DEA_PART_BODY, i)->name);
   }
   for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_part *part = dea_workshop_part(s->w, DEA_PART_OUTLINE, i);
     if (part != NULL && part->of == i && dea_ply_is_stretched(&l->plies[i])) {
-      dea_document_add(s->to, DEA_BLOCK_STEP,
-                       "Hold what is a support (below), then cut %s along its outline "
-                       "(%s): what it is bonded to takes its tension.",
-                       l->plies[i].name, part->name);
+      add_block(s->to, BLOCK_STEP,
+                "Hold what is a support (below), then cut %s along its outline "
+                "(%s): what it is bonded to takes its tension.",
+                l->plies[i].name, part->name);
     }
   }
 }
@@ -475,12 +610,12 @@ static void add_supports(const struct sheet *s)
         snprintf(held + n, sizeof held - n, "%s%c", n > 0 ? ", " : "", "xyz"[k]);
       }
     }
-    dea_document_add(s->to, DEA_BLOCK_STEP, "Hold %s%s%s%s along %s%s.",
-                     p->edge ? "the edge of " : "", l->regions[p->region].name,
-                     within ? " within " : "", within ? l->regions[p->within].name : "", held,
-                     p->hinged                               ? ", so that it may turn"
-                     : p->edge && !within && s->w->plan.held ? ": the frame does that"
-                                                             : "");
+    add_block(s->to, BLOCK_STEP, "Hold %s%s%s%s along %s%s.", p->edge ? "the edge of " : "",
+              l->regions[p->region].name, within ? " within " : "",
+              within ? l->regions[p->within].name : "", held,
+              p->hinged                               ? ", so that it may turn"
+              : p->edge && !within && s->w->plan.held ? ": the frame does that"
+                                                      : "");
   }
   for (size_t i = 0; i < l->spring_count; i++) {
     const struct dea_layout_spring *p = &l->springs[i];
@@ -490,24 +625,22 @@ static void add_supports(const struct sheet *s)
     if (p->count == 0) {
       snprintf(force, sizeof force, "%.4g %s", p->stiffness, p->component < 3 ? "N/m" : "N m/rad");
     }
-    dea_document_add(s->to, DEA_BLOCK_STEP, "Fasten the spring %s to %s, %s.", along[p->component],
-                     l->bodies[p->body].name, force);
+    add_block(s->to, BLOCK_STEP, "Fasten the spring %s to %s, %s.", along[p->component],
+              l->bodies[p->body].name, force);
   }
   for (size_t i = 1; i < l->channel_count; i++) {
     const struct dea_layout_channel *c = &l->channels[i];
     if (c->waveform != NULL) {
-      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to a source of its own (%s).", c->name,
-                       c->waveform);
+      add_block(s->to, BLOCK_STEP, "Connect %s to a source of its own (%s).", c->name, c->waveform);
     } else if (c->own_V != 0) {
-      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s: %.4g of the voltage, and %+.4g V.",
-                       c->name, c->ratio, c->own_V);
+      add_block(s->to, BLOCK_STEP, "Connect %s: %.4g of the voltage, and %+.4g V.", c->name,
+                c->ratio, c->own_V);
     } else if (c->ratio == 0) {
-      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to ground.", c->name);
+      add_block(s->to, BLOCK_STEP, "Connect %s to ground.", c->name);
     } else if (c->ratio == 1) {
-      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to the voltage.", c->name);
+      add_block(s->to, BLOCK_STEP, "Connect %s to the voltage.", c->name);
     } else {
-      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s: %.4g of the voltage.", c->name,
-                       c->ratio);
+      add_block(s->to, BLOCK_STEP, "Connect %s: %.4g of the voltage.", c->name, c->ratio);
     }
   }
 }
@@ -586,157 +719,133 @@ static void write_number(const struct sheet *s, const struct dea_design_number *
   }
 }
 
-/* A row with what its tolerance does; plies that are cut alike deviate alike. number: NULL: none.
- */
-static void add_row(const struct sheet *s, const struct dea_tolerance_effects *found,
-                    const struct dea_design_number *number, const char *what, const char *wanted,
+static void add_row(const struct sheet *s, const char *what, const char *wanted,
                     const char *tolerance)
 {
-  dea_document_add(s->to, DEA_BLOCK_ROW, "%s", what);
-  dea_document_cell(s->to, "%s", wanted);
-  dea_document_cell(s->to, "%s", tolerance);
-  for (size_t m = 0; m < found->seen_count; m++) {
-    const struct dea_seen *seen = &found->seen[m];
-    double effect = number == NULL ? NAN : 0;
-    for (size_t i = 0; i < found->number_count && number != NULL; i++) {
-      effect += found->first[i] == (size_t)(number - found->number) ? found->effect[i][m] : 0;
-    }
-    if (isnan(effect)) {
-      dea_document_cell(s->to, "unknown");
-    } else {
-      dea_document_cell(s->to, seen->length ? "%+.3g \xc2\xb5m (%+.2g %%)" : "%+.3g (%+.2g %%)",
-                        seen->length ? 1e6 * effect : effect,
-                        100 * effect / (seen->value - (seen->length ? 0 : 1)));
-    }
-  }
+  add_block(s->to, BLOCK_ROW, "%s", what);
+  next_cell(s->to, "%s", wanted);
+  next_cell(s->to, "%s", tolerance);
 }
 
-static void add_rows(const struct sheet *s, const struct dea_tolerance_effects *found)
+/* The ply that a key is of; DEA_LAYOUT_NONE. */
+static size_t ply_of(const struct dea_layout *layout, const char *key)
 {
-  const struct dea_device *d = s->w->plan.device;
-  char what[WORDS], wanted[WORDS], tolerance[WORDS], number[NUMBER], width[NUMBER];
-  for (size_t i = 0; i < found->number_count; i++) {
-    if (found->first[i] == i) {
-      write_what(&found->number[i], what);
-      write_number(s, &found->number[i], wanted, tolerance);
-      add_row(s, found, &found->number[i], what, wanted, tolerance);
+  char start[DEA_NUMBER_KEY_SIZE];
+  for (size_t i = 0; i < layout->ply_count; i++) {
+    snprintf(start, sizeof start, "plies.%.80s.", layout->plies[i].name);
+    if (strncmp(key, start, strlen(start)) == 0) {
+      return i;
     }
   }
+  return DEA_LAYOUT_NONE;
+}
+
+/* Whether a number is that of a ply that is cut as another one, which has a row. */
+static bool is_again(const struct dea_layout *layout, const struct dea_design_number *numbers,
+                     size_t i)
+{
+  const char *end = strrchr(numbers[i].key, '.');
+  const size_t ply = ply_of(layout, numbers[i].key);
+  const size_t like = ply == DEA_LAYOUT_NONE ? ply : dea_ply_like(layout, ply);
+  bool again = false;
+  for (size_t k = 0; k < i && like != ply; k++) {
+    const char *other = strrchr(numbers[k].key, '.');
+    again = again || (ply_of(layout, numbers[k].key) == like && strcmp(other, end) == 0);
+  }
+  return again;
+}
+
+static void add_number(const struct sheet *s, const struct dea_design_number *number)
+{
+  char what[WORDS], wanted[WORDS], tolerance[WORDS];
+  write_what(number, what);
+  write_number(s, number, wanted, tolerance);
+  add_row(s, what, wanted, tolerance);
+}
+
+/* Numbers of the design that have a tolerance, and where fibre tips are (an overlap of 0 is no
+ * number). */
+static dea_status add_numbers(struct dea_context *ctx, const struct sheet *s)
+{
+  const struct dea_fab_plan *plan = &s->w->plan;
+  struct dea_design_number *numbers = dea_alloc(ctx, DEA_NUMBERS_MAX, sizeof *numbers);
+  struct dea_design_number tips = {
+      .key = "fibres.tip_radius", .value = plan->device->fibre_tip_radius_m, .unit = "m"};
+  size_t count = 0;
+  DEA_TRY_MEMORY(numbers != NULL);
+  tips.tolerance =
+      dea_length_stretched_m(&plan->design->fabrication.tolerance.fibre, plan->device->pre_stretch);
+  const dea_status status = dea_design_numbers(ctx, plan->design, plan->device, 0, numbers, &count);
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    if (numbers[i].tolerance > 0 && !is_again(s->layout, numbers, i)) {
+      add_number(s, &numbers[i]);
+      tips.tolerance = strncmp(numbers[i].key, "fibres.", 7) == 0 ? 0 : tips.tolerance;
+    }
+  }
+  if (plan->device->fibre_count > 0 && tips.tolerance > 0 && status == DEA_OK) {
+    add_number(s, &tips);
+  }
+  dea_free(ctx, numbers);
+  return status;
+}
+
+static dea_status add_checks(struct dea_context *ctx, const struct sheet *s)
+{
+  const struct dea_device *d = s->w->plan.device;
+  char wanted[WORDS], number[NUMBER], width[NUMBER];
+  add_block(s->to, BLOCK_HEADING, "Check list");
+  add_block(s->to, BLOCK_HEAD, "what");
+  next_cell(s->to, "wanted");
+  next_cell(s->to, "tolerance");
+  DEA_TRY(ctx, add_numbers(ctx, s));
   if (s->w->plan.on_tabs != DEA_LAYOUT_NONE) {
     write_length(width, d->fibre_width_m, false);
     write_length(number, d->fibre_thickness_m, true);
     snprintf(wanted, sizeof wanted, "%s, %s", width, number);
-    add_row(s, found, NULL, "width and thickness of the fibres", wanted, "not given");
-    add_row(s, found, NULL, "glue below the fibres",
-            d->bond_thickness_m > 0 ? "even" : "thin, even", "not given");
+    add_row(s, "width and thickness of the fibres", wanted, "not given");
+    add_row(s, "glue below the fibres", d->bond_thickness_m > 0 ? "even" : "thin, even",
+            "not given");
   }
   if (s->layout->electrode_count > 1) {
-    add_row(s, found, NULL, "top over bottom electrodes", "as in the template", "not given");
+    add_row(s, "top over bottom electrodes", "as in the template", "not given");
   }
   write_length(number, s->w->plan.kerf_m, false);
   snprintf(wanted, sizeof wanted, "%s, on a test square", number);
-  add_row(s, found, NULL, "kerf of the cutter", wanted, "not given");
-}
-
-/* What the effects are of, and by which model. */
-static void add_source(const struct sheet *s, const struct dea_tolerance_effects *found)
-{
-  const bool bound = strcmp(found->model, "lumped") == 0;
-  const double highest_V = dea_design_highest_V(s->w->plan.design);
-  if (isnan(found->voltage_V) || found->seen_count == 0) {
-    dea_document_add(
-        s->to, DEA_BLOCK_TEXT, "%s",
-        !isnan(found->voltage_V)
-            ? "What a deviation does is unknown: the design has no monitor."
-            : "What a deviation does is unknown: model 3d is not installed (dea doctor), or the "
-              "models have no state to be trusted at the voltages of this design; a preview "
-              "(compute.solid.film: membrane beside stiff parts) is none.");
-    return;
-  }
-  if (bound) {
-    dea_document_add(s->to, DEA_BLOCK_TEXT,
-                     "Model 3d is not installed (dea doctor), or has no state to be trusted at the "
-                     "voltages of this design (a preview, compute.solid.film: membrane, is none). "
-                     "What follows is by model lumped, of rigid, hinged fibres without the film "
-                     "between them: an upper bound, no prediction.");
-  }
-  dea_document_add(s->to, DEA_BLOCK_TEXT,
-                   "Effect of each tolerance (plus, with everything else as designed; plies that "
-                   "are cut alike deviate alike; per cent below 0: it moves less) by model %s at "
-                   "%.4g kV, on:",
-                   found->model, 1e-3 * found->voltage_V);
-  for (size_t m = 0; m < found->seen_count; m++) {
-    const struct dea_seen *seen = &found->seen[m];
-    dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 %s: %s %.4g%s from the flat film",
-                     seen->name, seen->motion, (seen->length ? 1e6 : 1) * seen->value,
-                     seen->length ? " \xc2\xb5m" : "");
-  }
-  if (found->seen_count < s->layout->monitor_count) {
-    dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 not of the %zu monitors after these",
-                     s->layout->monitor_count - found->seen_count);
-  }
-  if (found->voltage_V < highest_V) {
-    dea_document_add(s->to, DEA_BLOCK_TEXT,
-                     "The design goes to %.4g kV. The next quarter of that is not shown: by the "
-                     "trend of its tension the film goes slack there, or the model has no state to "
-                     "be trusted.",
-                     1e-3 * highest_V);
-  }
-}
-
-static dea_status add_checks(struct dea_context *ctx, const struct sheet *s, bool sensitivity)
-{
-  const struct dea_fab_plan *plan = &s->w->plan;
-  struct dea_tolerance_effects *found = dea_alloc(ctx, 1, sizeof *found);
-  DEA_TRY_MEMORY(found != NULL);
-  const bool solved = sensitivity || plan->device->disc; // a disc is quick
-  const dea_status status =
-      dea_tolerance_effects_find(ctx, plan->design, plan->device, solved, found);
-  dea_document_add(s->to, DEA_BLOCK_HEADING, "Check list");
-  if (status == DEA_OK && solved) {
-    add_source(s, found);
-  }
-  dea_document_add(s->to, DEA_BLOCK_HEAD, "what");
-  dea_document_cell(s->to, "wanted");
-  dea_document_cell(s->to, "tolerance");
-  for (size_t m = 0; m < found->seen_count; m++) {
-    dea_document_cell(s->to, "%s, %s", found->seen[m].name, found->seen[m].motion);
-  }
-  add_rows(s, found);
-  dea_document_add(s->to, DEA_BLOCK_NOTE,
-                   "Tolerances are those of the design's section fabrication.tolerance; those that "
-                   "nobody wrote are assumptions (docs/fabrication.md). %s",
-                   solved ? "'dea run --sensitivity' has slopes by other numbers of the design."
-                          : "'dea fab --sensitivity' computes what they do to the monitors.");
-  dea_free(ctx, found);
-  return status;
+  add_row(s, "kerf of the cutter", wanted, "not given");
+  add_block(s->to, BLOCK_NOTE,
+            "Tolerances are those of the design's section fabrication.tolerance; those that "
+            "nobody wrote are assumptions (docs/fabrication.md). 'dea run --sensitivity' "
+            "computes what they do (change by tolerance).");
+  return DEA_OK;
 }
 
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
-                             bool sensitivity, struct dea_document *document)
+                             const char *drawing, struct dea_text *out)
 {
-  const struct sheet s = {workshop, workshop->plan.layout, document};
+  struct document document = {.html = out, .drawing = drawing};
+  const struct sheet s = {workshop, workshop->plan.layout, &document};
   const struct dea_design *design = workshop->plan.design;
   const char *title = design->title.text;
-  dea_document_add(document, DEA_BLOCK_TITLE, "Process sheet: %s",
-                   title[0] != '\0' ? title : dea_path_name(design->file));
-  dea_document_add(document, DEA_BLOCK_NOTE,
-                   "Made by dea fab from %s for %d actuator%s. Steps after section 3.1 of the "
-                   "paper, with the numbers of the design. DXF and SVG files have the kerf of the "
-                   "cutter in them, parts.pdf shows the finished parts at 1:1.%s",
-                   dea_path_name(design->file), workshop->plan.copies,
-                   workshop->plan.copies > 1 ? "s" : "",
-                   s.layout->ply_count > 1
-                       ? " Plies lie on each other from bottom to top. Glue that has a thickness "
-                         "that counts is a ply of its own."
-                       : "");
+  add_block(&document, BLOCK_TITLE, "Process sheet: %s",
+            title[0] != '\0' ? title : dea_path_name(design->file));
+  add_block(&document, BLOCK_NOTE,
+            "Made by dea fab from %s for %d actuator%s. Steps after section 3.1 of the "
+            "paper, with the numbers of the design. DXF and SVG files have the kerf of the "
+            "cutter in them, parts.pdf shows the finished parts at 1:1.%s",
+            dea_path_name(design->file), workshop->plan.copies,
+            workshop->plan.copies > 1 ? "s" : "",
+            s.layout->ply_count > 1
+                ? " Plies lie on each other from bottom to top. Glue that has a thickness "
+                  "that counts is a ply of its own."
+                : "");
   add_materials(&s);
-  dea_document_add(document, DEA_BLOCK_HEADING, "Steps");
+  add_block(&document, BLOCK_HEADING, "Steps");
   add_cutting(&s);
   add_printing(&s);
   add_assembly(&s);
   add_supports(&s);
-  DEA_TRY(ctx, add_checks(ctx, &s, sensitivity));
-  dea_document_end(document);
-  return document->html.failed ? DEA_E_MEMORY : DEA_OK;
+  DEA_TRY(ctx, add_checks(ctx, &s));
+  end_block(&document, "", false);
+  dea_text_add(out, "</body>\n</html>\n");
+  return out->failed ? DEA_E_MEMORY : DEA_OK;
 }

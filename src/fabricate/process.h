@@ -1,7 +1,7 @@
 /* The process sheet: what is needed, what is done, what is checked, with the design's numbers. */
 #pragma once
 
-#include "fabricate/document.h"
+#include "base/text.h"
 #include "fabricate/workshop.h"
 
 /* Amounts for one device; NAN where the design does not say enough, 0 where there is none. */
@@ -19,8 +19,6 @@ struct dea_amounts {
 
 void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *out);
 
-/* Writes it all, with the effects of tolerances: of a disc, and of other devices where they are
- * asked for, which takes their solution. document: zero but for its context and drawing; to be
- * freed also after a failure. */
+/* Writes it all as one HTML file. drawing: of the actuator, SVG text; NULL: none. */
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
-                             bool sensitivity, struct dea_document *document);
+                             const char *drawing, struct dea_text *out);

@@ -1,6 +1,7 @@
 #include "fabricate/svg.h"
 
-#include "fabricate/labels.h"
+#include "base/html.h"
+#include "fabricate/dxf.h"
 
 #include <math.h>
 
@@ -44,7 +45,7 @@ static void write_words(struct dea_text *out, double x, double y, double height,
                "    <text x=\"%.6f\" y=\"%.6f\" font-size=\"%.6f\" text-anchor=\"middle\" "
                "stroke=\"none\" fill=\"#000000\" font-family=\"sans-serif\">",
                mm(x), mm(y), mm(1.4 * height));
-  dea_xml_add(out, text);
+  dea_html_text(out, text);
   dea_text_add(out, "</text>\n");
 }
 
@@ -108,7 +109,7 @@ dea_status dea_svg_write(const struct dea_workshop *workshop, size_t index, stru
                "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"\n"
                "     width=\"%.6fmm\" height=\"%.6fmm\" viewBox=\"0 0 %.6f %.6f\">\n  <title>",
                width, height, width, height);
-  dea_xml_add(out, dea_text_get(&words));
+  dea_html_text(out, dea_text_get(&words));
   dea_text_add(out, "</title>\n");
   dea_status status = words.failed ? DEA_E_MEMORY : DEA_OK;
   dea_text_free(&words);

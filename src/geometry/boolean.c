@@ -58,21 +58,6 @@ struct work {
   size_t chord_room;
 };
 
-/* Room for one more in an owned array. */
-static dea_status reserve(struct dea_context *ctx, void **array, size_t count, size_t *capacity,
-                          size_t size)
-{
-  if (count < *capacity) {
-    return DEA_OK;
-  }
-  size_t larger = 2 * *capacity + 64;
-  void *moved = dea_resize(ctx, *array, larger, size);
-  DEA_TRY_MEMORY(moved != NULL);
-  *array = moved;
-  *capacity = larger;
-  return DEA_OK;
-}
-
 /* ---- circles ---- */
 
 static double off_circle(const struct dea_piece *arc, const double x[2])
@@ -149,11 +134,9 @@ static double angle_between(const struct dea_piece *circle, const double a[2], c
 static dea_status add_cut(struct work *w, size_t piece, const double x[2])
 {
   const struct dea_piece *p = &w->all.piece[piece];
-  void *cut = w->cut;
   size_t node;
   DEA_TRY(w->ctx, dea_point_map_add(&w->node, x, &node));
-  DEA_TRY(w->ctx, reserve(w->ctx, &cut, w->cut_count, &w->cut_room, sizeof *w->cut));
-  w->cut = cut;
+  DEA_TRY_STATUS(dea_array_grow(w->ctx, &w->cut, w->cut_count, &w->cut_room, sizeof *w->cut));
   const double *at = w->node.point[node];
   double along = apart(p->from, at);
   if (p->arc) {
@@ -210,7 +193,7 @@ static dea_status find_cuts(struct work *w)
     size_t cursor = 0, j;
     dea_piece_grow_box(&all->piece[i], box);
     while (dea_pieces_next(all, box, &cursor, &j)) {
-      DEA_TRY(w->ctx, j > i && !dea_pieces_apart(all, i, j) ? cut_pair(w, i, j) : DEA_OK);
+      DEA_TRY(w->ctx, j > i ? cut_pair(w, i, j) : DEA_OK);
     }
     if ((i & 255) == 0 && dea_interrupted(w->ctx)) {
       return dea_fail(w->ctx, DEA_E_INTERRUPTED, "interrupted while regions were combined");
@@ -227,9 +210,7 @@ static dea_status find_edges(struct work *w)
     if (a->piece != b->piece || a->node == b->node) {
       continue;
     }
-    void *edge = w->edge;
-    DEA_TRY(w->ctx, reserve(w->ctx, &edge, w->edge_count, &w->edge_room, sizeof *w->edge));
-    w->edge = edge;
+    DEA_TRY_STATUS(dea_array_grow(w->ctx, &w->edge, w->edge_count, &w->edge_room, sizeof *w->edge));
     bool clockwise = w->all.piece[a->piece].sweep < 0;
     w->edge[w->edge_count++] =
         (struct edge){clockwise ? b->node : a->node, clockwise ? a->node : b->node,
@@ -273,11 +254,8 @@ struct ring_writer {
 
 static dea_status add_point(struct ring_writer *writer, const double x[2])
 {
-  struct dea_context *ctx = writer->work->ctx;
-  void *point = writer->rings->point;
-  DEA_TRY(ctx, reserve(ctx, &point, writer->point_count, &writer->point_room,
-                       sizeof *writer->rings->point));
-  writer->rings->point = point;
+  DEA_TRY_STATUS(dea_array_grow(writer->work->ctx, &writer->rings->point, writer->point_count,
+                                &writer->point_room, sizeof *writer->rings->point));
   memcpy(writer->rings->point[writer->point_count++], x, 2 * sizeof *x);
   return DEA_OK;
 }
@@ -293,13 +271,11 @@ static dea_status add_edge(struct ring_writer *writer, size_t number)
   for (size_t k = 1; k < count; k++) {
     double x[2];
     size_t known = w->chord.count, index;
-    void *chord_edge = w->chord_edge;
     chord_point(w, edge, clockwise ? count - k : k, count, x);
     DEA_TRY(w->ctx, add_point(writer, x));
     DEA_TRY(w->ctx, dea_point_map_add(&w->chord, x, &index));
-    DEA_TRY(w->ctx,
-            reserve(w->ctx, &chord_edge, w->chord.count, &w->chord_room, sizeof *w->chord_edge));
-    w->chord_edge = chord_edge;
+    DEA_TRY_STATUS(dea_array_grow(w->ctx, &w->chord_edge, w->chord.count, &w->chord_room,
+                                  sizeof *w->chord_edge));
     if (index == known) { // an arc that two pieces share is known from the first
       w->chord_edge[index] = number;
     }

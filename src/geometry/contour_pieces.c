@@ -65,28 +65,3 @@ bool dea_pieces_next(const struct dea_pieces *pieces, const double box[4], size_
   const double wide[4] = {box[0] - d, box[1] - d, box[2] + d, box[3] + d};
   return dea_box_tree_next(&pieces->tree, wide, cursor, found);
 }
-
-/* Whether a piece lies beside a line. */
-static bool beside(const struct dea_piece *line, const struct dea_piece *p, double snap)
-{
-  double tx = (line->to[0] - line->from[0]) / line->length_m;
-  double ty = (line->to[1] - line->from[1]) / line->length_m;
-  if (p->arc) {
-    double off = tx * (p->centre[1] - line->from[1]) - ty * (p->centre[0] - line->from[0]);
-    return fabs(off) > p->radius_m + snap;
-  }
-  double from = tx * (p->from[1] - line->from[1]) - ty * (p->from[0] - line->from[0]);
-  double to = tx * (p->to[1] - line->from[1]) - ty * (p->to[0] - line->from[0]);
-  return fmin(from, to) > snap || fmax(from, to) < -snap;
-}
-
-bool dea_pieces_apart(const struct dea_pieces *pieces, size_t i, size_t j)
-{
-  const struct dea_piece *a = &pieces->piece[i], *b = &pieces->piece[j];
-  double snap = 2 * pieces->snap_m;
-  if (a->arc && b->arc) {
-    double d = hypot(a->centre[0] - b->centre[0], a->centre[1] - b->centre[1]);
-    return d > a->radius_m + b->radius_m + snap || d < fabs(a->radius_m - b->radius_m) - snap;
-  }
-  return (!a->arc && beside(a, b, snap)) || (!b->arc && beside(b, a, snap));
-}

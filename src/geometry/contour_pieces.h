@@ -24,7 +24,3 @@ void dea_pieces_free(struct dea_pieces *pieces);
 /* Pieces whose boxes come nearer than snap_m to a box, one a call, as dea_box_tree_next. */
 bool dea_pieces_next(const struct dea_pieces *pieces, const double box[4], size_t *cursor,
                      size_t *found);
-/* Whether two pieces cannot come nearer than snap_m, by their whole lines and circles; a quick
- * look.
- */
-bool dea_pieces_apart(const struct dea_pieces *pieces, size_t i, size_t j);

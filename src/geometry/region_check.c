@@ -215,8 +215,7 @@ static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *
     dea_piece_grow_box(&all->piece[i], box);
     size_t cursor = 0, j;
     while (dea_pieces_next(all, box, &cursor, &j)) {
-      if (j <= i || (!apart_too && all->contour[i] != all->contour[j]) ||
-          dea_pieces_apart(all, i, j)) {
+      if (j <= i || (!apart_too && all->contour[i] != all->contour[j])) {
         continue;
       }
       struct pair pair = {.all = all, .i = i, .j = j, .a = &all->piece[i], .b = &all->piece[j]};

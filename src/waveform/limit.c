@@ -17,12 +17,7 @@ struct limiter {
 static dea_status go_to(struct limiter *p, double time_s, double value_V)
 {
   struct dea_waveform *w = p->out;
-  if (w->knot_count == p->capacity) {
-    struct dea_wave_knot *moved = dea_resize(w->ctx, w->knots, 2 * p->capacity, sizeof *moved);
-    DEA_TRY_MEMORY(moved != NULL);
-    w->knots = moved;
-    p->capacity *= 2;
-  }
+  DEA_TRY_STATUS(dea_array_grow(w->ctx, &w->knots, w->knot_count, &p->capacity, sizeof *w->knots));
   p->time_s = time_s;
   p->value_V = value_V;
   dea_wave_add(w, 0, time_s, value_V);

@@ -1,8 +1,10 @@
 /* Waveforms: a voltage for every time from 0 on, with the times at which it bends or jumps.
  *
  * A waveform knows nothing of what it drives: a study plays it to a model, a laboratory to an
- * amplifier. A kind is one file wave_<kind>.c and one line in wave_list.h. Times are found from
- * whole numbers of cycles, never by adding up, so that nothing drifts over thousands of cycles. */
+ * amplifier. A kind is a table of keys with a function, and one line in waveform.c. Times are found
+ * from whole numbers of cycles, never by adding up, so that nothing drifts over thousands of
+ * cycles.
+ */
 #pragma once
 
 #include "base/schema.h"
@@ -32,15 +34,9 @@ struct dea_wave_extent {
   double slope_V_per_s; // fastest change between jumps, >= 0; of a part of a cycle at most that
 };
 
-/* A kind of waveform. value, extent and cycle are NULL for one that is made of straight pieces. */
+/* A kind of waveform. The functions are NULL for one that is made of straight pieces. */
 struct dea_wave_type {
-  const char *name;                // "square"
-  const struct dea_record *record; // its keys, "kind" among them
-  size_t raw_size;                 // of what they are read into
-  /* Makes the waveform of what was read (zeroed but for `type`); beside: the file from whose folder
-   * paths count. What is wrong becomes findings. */
-  dea_status (*make)(const struct dea_reader *reader, const void *raw, const char *beside,
-                     struct dea_waveform *out);
+  const char *name; // "square"
   double (*value)(const struct dea_waveform *waveform, double time_s);
   void (*extent)(const struct dea_waveform *waveform, struct dea_wave_extent *out);
   bool (*cycle)(const struct dea_waveform *waveform, size_t number, struct dea_wave_cycle *out);

@@ -136,4 +136,17 @@ TEST(test_way_for_a_file)
   dea_context_destroy(ctx);
 }
 
+TEST(test_letters)
+{
+  static const char *const bad[] = {"\xc0\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\x80",
+                                    "\xf0\x9f"};
+  unsigned code;
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    assert_int_equal(dea_letter_read(bad[i], &code), 0);
+    assert_int_equal(code, 0xfffd);
+  }
+  assert_int_equal(dea_letter_read("\xf0\x9f\x98\x80", &code), 4);
+  assert_int_equal(code, 0x1f600);
+}
+
 TESTS(NULL, NULL)

@@ -69,33 +69,10 @@ TEST(test_summary)
 
 TEST(test_without_fibres)
 {
-  assert_int_equal(command_run("fab " STILL "-o disc"), 0);
   char path[700];
-  // the sheet of an older design's fibres goes
-  assert_int_equal(command_run("fab @/examples/plain-disc.yaml -o disc --force"), 0);
+  assert_int_equal(command_run("fab @/examples/plain-disc.yaml -o disc"), 0);
   snprintf(path, sizeof path, "%s/disc/fibres.dxf", command_folder);
   assert_int_not_equal(access(path, R_OK), 0);
-}
-
-/* Sheets of parts that are gone go; what is not ours, or no sheet, stays. */
-TEST(test_parts_that_are_gone)
-{
-  static const struct {
-    const char *name;
-    bool stays;
-  } files[] = {{"body-bar.dxf", false}, {"body-bar.svg", false},       {"ply-stripes.dxf", false},
-               {"film.dxf", true},      {"ply-of-a-friend.dxf", true}, {"notes.txt", true}};
-  char path[700], shell[1600];
-  assert_int_equal(command_run("fab @/examples/devices/pure-shear.yaml -o parts"), 0);
-  snprintf(shell, sizeof shell,
-           "cd '%s/parts' && echo mine >ply-of-a-friend.dxf && cp body-bar.dxf notes.txt",
-           command_folder);
-  assert_int_equal(system(shell), 0);
-  assert_int_equal(command_run("fab @/examples/plain-disc.yaml -o parts --force"), 0);
-  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-    snprintf(path, sizeof path, "%s/parts/%s", command_folder, files[i].name);
-    assert_int_equal(access(path, R_OK) == 0, files[i].stays);
-  }
 }
 
 /* Files are the same however often they are written, and whatever the locale. */

@@ -1,7 +1,6 @@
 /* The identity of a device: every key of the schema and every number of a material is part of it,
  * but those that are said not to matter. */
 #include "device/identity.h"
-#include "material/material_identity.h"
 #include "study/design_file.h"
 
 #include "testing.h"

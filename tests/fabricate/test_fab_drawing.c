@@ -1,12 +1,10 @@
-/* Drawings and process sheets: words that do not lie on each other, amounts by closed forms,
- * sensitivities against designs that are changed by hand, and allocations that fail. */
-#include "fabricate/document.h"
+/* Drawings and process sheets: words that do not lie on each other, amounts by closed forms, and
+ * allocations that fail. */
 #include "fabricate/pages.h"
 #include "fabricate/picture.h"
 #include "fabricate/process.h"
 #include "failing_allocator.h"
-
-#include "fab_sensitivity.h" // its names after those
+#include "workshop_fixture.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -148,8 +146,6 @@ TEST(test_words_do_not_overlap)
   for (size_t v = 0; v < VARIANTS; v++) {
     double size[2];
     make(variants[v].sets, variants[v].count);
-    design->compute.voltages_V[design->compute.voltage_count - 1] = 1e3; // quick
-    design->compute.voltage_count = 1;
     dea_picture_size(workshop, size);
     begin(size[0], size[1]);
     dea_picture_draw(&paper, workshop);
@@ -161,9 +157,9 @@ TEST(test_words_do_not_overlap)
     check_page();
     assert_int_equal(pages,
                      workshop->count + (workshop->plan.copies > 1 ? workshop->count - 1 : 0));
-    struct dea_document document = {.html = {.ctx = ctx}};
-    assert_int_equal(dea_process_write(ctx, workshop, false, &document), DEA_OK);
-    dea_text_free(&document.html);
+    struct dea_text html = {.ctx = ctx};
+    assert_int_equal(dea_process_write(ctx, workshop, NULL, &html), DEA_OK);
+    dea_text_free(&html);
   }
 }
 
@@ -191,9 +187,9 @@ TEST(test_words_of_devices)
     dea_pages_draw(&paper, workshop);
     check_page();
     assert_int_equal(pages, workshop->count);
-    struct dea_document document = {.html = {.ctx = ctx}};
-    assert_int_equal(dea_process_write(ctx, workshop, false, &document), DEA_OK);
-    dea_text_free(&document.html);
+    struct dea_text html = {.ctx = ctx};
+    assert_int_equal(dea_process_write(ctx, workshop, NULL, &html), DEA_OK);
+    dea_text_free(&html);
   }
 }
 
@@ -232,43 +228,25 @@ TEST(test_amounts)
   assert_true(isnan(a.ink_volume_m3) && isnan(a.bond_volume_m3)); // never invented
 }
 
-/* Without fibres model axisymmetric says all; what 3d says of others is in test_fab_solid.c. */
-TEST(test_sensitivity_of_film)
-{
-  const struct dea_override none = {"fibres", "null"};
-  make(&none, 1);
-  find_effects();
-  assert_string_equal(found.model, "axisymmetric");
-  assert_true(effect_of("film.thickness") < 0); // a thicker film moves less
-  check_sensitivity(none, 0.005);
-  // without a voltage nothing is known
-  const struct dea_override still = {"compute.voltage", "{values: [0 kV]}"};
-  make(&still, 1);
-  find_effects();
-  assert_true(isnan(found.voltage_V) && found.seen_count == 0);
-}
-
 static dea_status write_document(struct dea_context *failing)
 {
-  struct dea_document document = {.html = {.ctx = failing}};
-  dea_status status = dea_process_write(failing, workshop, false, &document);
-  dea_text_free(&document.html);
+  struct dea_text html = {.ctx = failing};
+  dea_status status = dea_process_write(failing, workshop, NULL, &html);
+  dea_text_free(&html);
   return status;
 }
 
 TEST(test_each_allocation)
 {
-  // without fibres: what model 3d needs is tested elsewhere
-  const struct dea_override sets[] = {{"fibres", "null"}, {"compute.voltage", "{values: [1 kV]}"}};
-  make(sets, 2);
+  make(NULL, 0);
   struct failing_attempt attempt = {.call = write_document};
   struct failing_count count;
   long n = 0;
-  for (; failing_run(failing_attempt_run, &attempt, n, &count); n += n < 60 ? 1 : 17) {
-    assert_int_equal(attempt.status, DEA_E_MEMORY); // the models' own are tested elsewhere
+  for (; failing_run(failing_attempt_run, &attempt, n, &count); n++) {
+    assert_int_equal(attempt.status, DEA_E_MEMORY);
   }
   assert_int_equal(attempt.status, DEA_OK);
-  assert_true(n > 100);
+  assert_true(n > 20);
 }
 
 TESTS(workshop_set_up, workshop_tear_down)

@@ -2,7 +2,6 @@
 // ctest: quick, heavy
 #include "design_text.h"
 #include "fabricate/dxf.h"
-#include "fabricate/labels.h"
 #include "fabricate/svg.h"
 #include "failing_allocator.h"
 

@@ -3,7 +3,7 @@
 #include "fabricate/cairo_canvas.h"
 
 #include "base/bytes.h"
-#include "fabricate/labels.h"
+#include "base/text.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -36,16 +36,15 @@ enum { WORDS_SIZE = 1024 };
 static void clean_text(const char *words, char out[WORDS_SIZE])
 {
   size_t n = 0;
-  while (n + 4 < WORDS_SIZE) {
-    const char *start = words;
-    unsigned code = dea_letter_next(&words);
-    if (code == 0) {
-      break;
-    }
-    const char *letter = code == 0xfffd ? "\xef\xbf\xbd" : code == ' ' ? " " : start;
-    size_t length = letter == start ? (size_t)(words - start) : strlen(letter);
-    memcpy(out + n, letter, length);
-    n += length;
+  while (*words != '\0' && n + 4 < WORDS_SIZE) {
+    unsigned code;
+    const size_t length = dea_letter_read(words, &code);
+    const bool good = length > 0 && code != 0xfffe && code != 0xffff; // which XML forbids
+    const char *letter = !good ? "\xef\xbf\xbd" : dea_letter_is_control(code) ? " " : words;
+    const size_t size = letter == words ? length : strlen(letter);
+    memcpy(out + n, letter, size);
+    n += size;
+    words += good ? length : 1;
   }
   out[n] = '\0';
 }
