@@ -81,6 +81,20 @@ static dea_status read_good(struct dea_context *ctx, const struct dea_protocol_i
                                  section->path, protocol->file);
 }
 
+/* Stops one that could not be set up; the status, DEA_E_INTERLOCK where its output is not known to
+ * be at 0 V then. */
+static dea_status abandon(struct dea_context *ctx, struct dea_instrument *instrument,
+                          dea_status status)
+{
+  char why[512];
+  if (dea_instrument_stop(ctx, instrument).state != DEA_ZERO_UNKNOWN) {
+    return status;
+  }
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  return dea_fail(ctx, DEA_E_INTERLOCK, "%s; its output is not known to be at 0 V: switch it off",
+                  why);
+}
+
 dea_status dea_instrument_open(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
                                const struct dea_protocol *protocol, struct dea_instrument **out)
@@ -89,8 +103,20 @@ dea_status dea_instrument_open(struct dea_context *ctx,
   void *raw;
   *out = NULL;
   DEA_TRY(ctx, read_good(ctx, section, protocol, &type, &raw));
-  dea_status status = type->open(ctx, raw, protocol, out);
+  struct dea_instrument *instrument = dea_alloc(ctx, 1, type->size);
+  dea_status status = DEA_E_MEMORY;
+  if (instrument != NULL) {
+    instrument->type = type;
+    instrument->roles = type->roles;
+    status = type->open(ctx, instrument, raw, protocol);
+  }
+  if (status != DEA_OK && instrument != NULL) {
+    status = instrument->reached ? abandon(ctx, instrument, status) : status;
+    type->close(ctx, instrument);
+    instrument = NULL;
+  }
   dea_free(ctx, raw);
+  *out = instrument;
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 

@@ -56,6 +56,7 @@ struct dea_instrument {
   char host[DEA_INSTRUMENT_HOST_SIZE];
   /* Why 0 V is not believed should it measure that now, static; NULL: it is. */
   const char *doubt;
+  bool reached; // it may have been told something: stopped where it cannot be opened
 };
 
 /* What is known of an instrument that is not open, of the time when it was. */
@@ -71,17 +72,19 @@ struct dea_instrument_type {
   const char *name;                // "sim"
   const struct dea_record *record; // its keys, "kind" among them
   size_t raw_size;                 // of what they are read into
+  size_t size;                     // of its own struct
   unsigned roles;
   /* Adds findings on what the table cannot know; called without errors so far. NULL: all is fine.
    */
   dea_status (*check)(const struct dea_reader *reader, const void *raw,
                       const struct dea_protocol *protocol);
-  /* raw: as read, lent for the call; protocol: lent, outlives the instrument. Connects, sets up,
-   * and waits for what it has to know (a sensor's first profile). The output stays at 0 V.
-   * DEA_E_INSTRUMENT with what is wrong and what to look at; DEA_E_UNSUPPORTED when a vendor's
-   * library is not there; DEA_E_INTERLOCK when its output is not known to be at 0 V. */
-  dea_status (*open)(struct dea_context *ctx, const void *raw, const struct dea_protocol *protocol,
-                     struct dea_instrument **out);
+  /* instrument: zero, with type and roles; closed by the caller, also after a failure. raw: as
+   * read, lent for the call; protocol: lent, outlives the instrument. Connects, sets up, and waits
+   * for what it has to know (a sensor's first profile). The output stays at 0 V. DEA_E_INSTRUMENT
+   * with what is wrong and what to look at; DEA_E_UNSUPPORTED when a vendor's library is not there.
+   */
+  dea_status (*open)(struct dea_context *ctx, struct dea_instrument *instrument, const void *raw,
+                     const struct dea_protocol *protocol);
   /* Starts the clock. */
   dea_status (*start)(struct dea_context *ctx, struct dea_instrument *instrument);
   /* Queues control voltages [V] for the output, in the order played, one a sample of the protocol's
@@ -119,7 +122,8 @@ const struct dea_instrument_type *dea_instrument_find(const char *name);
 void dea_instrument_protocol_schema(struct dea_protocol_schema *out);
 
 /* Reads an instrument's section (not NULL) and opens it. A wrong key is a finding and DEA_E_DESIGN.
- * out: owned by the caller (type->close), NULL on failure. */
+ * DEA_E_INTERLOCK when its output is not known to be at 0 V. out: owned by the caller
+ * (type->close), NULL on failure. */
 dea_status dea_instrument_open(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
                                const struct dea_protocol *protocol, struct dea_instrument **out);

@@ -317,14 +317,13 @@ static dea_status set_up(struct dea_context *ctx, struct gocator *g)
   return DEA_OK;
 }
 
-static dea_status open_it(struct dea_context *ctx, const void *data,
-                          const struct dea_protocol *protocol, struct dea_instrument **out)
+static dea_status open_it(struct dea_context *ctx, struct dea_instrument *instrument,
+                          const void *raw, const struct dea_protocol *protocol)
 {
   (void)protocol;
-  struct gocator *g = dea_alloc(ctx, 1, sizeof *g);
-  DEA_TRY_MEMORY(g != NULL);
-  g->raw = *(const struct raw *)data;
-  g->base.type = &dea_instrument_gocator;
+  struct gocator *g = (struct gocator *)instrument;
+  g->raw = *(const struct raw *)raw;
+  g->base.reached = true;
   g->base.roles = (g->raw.mode.value == PROFILES ? DEA_SENDS_PROFILES : 0U) |
                   (g->raw.measurement_count > 0 ? DEA_GIVES_READINGS : 0U);
   g->base.start_s = NAN;
@@ -334,14 +333,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
     const struct raw_measurement *m = &g->raw.measurements[i];
     dea_instrument_add_reading(&g->base, &m->name, &m->quantity, &m->unit);
   }
-  dea_status status = set_up(ctx, g);
-  if (status != DEA_OK) {
-    (void)stop(ctx, &g->base);
-    close_it(ctx, &g->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = &g->base;
-  return DEA_OK;
+  return set_up(ctx, g);
 }
 
 static dea_status start_gocator(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -379,6 +371,7 @@ const struct dea_instrument_type dea_instrument_gocator = {
     .name = "gocator",
     .record = &dea_instrument_gocator_record,
     .raw_size = sizeof(struct raw),
+    .size = sizeof(struct gocator),
     .roles = DEA_SENDS_PROFILES | DEA_GIVES_READINGS,
     .check = check,
     .open = open_it,

@@ -198,28 +198,19 @@ static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
   dea_free(ctx, k);
 }
 
-static dea_status open_it(struct dea_context *ctx, const void *data,
-                          const struct dea_protocol *protocol, struct dea_instrument **out)
+static dea_status open_it(struct dea_context *ctx, struct dea_instrument *instrument,
+                          const void *raw, const struct dea_protocol *protocol)
 {
-  struct keyence *k = dea_alloc(ctx, 1, sizeof *k);
+  struct keyence *k = (struct keyence *)instrument;
   (void)protocol;
-  DEA_TRY_MEMORY(k != NULL);
-  k->raw = *(const struct raw *)data;
-  k->base.type = &dea_instrument_keyence;
-  k->base.roles = DEA_GIVES_READINGS;
+  k->raw = *(const struct raw *)raw;
   add_readings(&k->base, &k->raw, k->raw.reading_count);
   k->schedule = (struct dea_poll_schedule){.count = k->raw.reading_count,
                                            .interval_s = k->raw.interval_s.si,
                                            .timeout_s = k->raw.timeout_s.si};
-  dea_status status = dea_serial_open(ctx, "the Keyence LK", k->raw.device.text,
-                                      (int)k->raw.baud.si, k->raw.parity.value, &k->link.socket);
-  status = status == DEA_OK ? find_out(ctx, k) : status;
-  if (status != DEA_OK) {
-    close_it(ctx, &k->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = &k->base;
-  return DEA_OK;
+  DEA_TRY(ctx, dea_serial_open(ctx, "the Keyence LK", k->raw.device.text, (int)k->raw.baud.si,
+                               k->raw.parity.value, &k->link.socket));
+  return find_out(ctx, k);
 }
 
 static dea_status start_it(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -303,6 +294,7 @@ const struct dea_instrument_type dea_instrument_keyence = {
     .name = "keyence",
     .record = &dea_instrument_keyence_record,
     .raw_size = sizeof(struct raw),
+    .size = sizeof(struct keyence),
     .roles = DEA_GIVES_READINGS,
     .check = check,
     .open = open_it,

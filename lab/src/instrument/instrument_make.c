@@ -66,15 +66,3 @@ struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrume
   }
   return zero;
 }
-
-dea_status dea_instrument_abandon(struct dea_context *ctx, struct dea_instrument *instrument,
-                                  dea_status status)
-{
-  char why[512];
-  if (dea_instrument_stop(ctx, instrument).state != DEA_ZERO_UNKNOWN) {
-    return status;
-  }
-  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-  return dea_fail(ctx, DEA_E_INTERLOCK, "%s; its output is not known to be at 0 V: switch it off",
-                  why);
-}

@@ -47,7 +47,3 @@ void dea_instrument_add_reading(struct dea_instrument *instrument, const struct 
 /* Adds one of a displacement. */
 void dea_instrument_add_displacement(struct dea_instrument *instrument,
                                      const struct dea_label *name);
-/* Stops one that could not be set up; the status, DEA_E_INTERLOCK where its output is not known to
- * be at 0 V then. */
-dea_status dea_instrument_abandon(struct dea_context *ctx, struct dea_instrument *instrument,
-                                  dea_status status);

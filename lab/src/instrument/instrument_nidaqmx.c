@@ -105,7 +105,6 @@ struct nidaqmx {
   char device[DEA_TITLE_SIZE];
   const struct dea_protocol *protocol;
   void *output, *input; // tasks; NULL: none
-  bool found;           // its output is there, at whatever voltage
   size_t capacity;      // of the output's queue, samples
   size_t queued;        // samples given to the driver
   size_t scans_room;    // of scans, samples of each input
@@ -169,7 +168,7 @@ static dea_status set_zero(struct dea_context *ctx, struct nidaqmx *n)
   clear(n, &n->output);
   dea_status status = build_output(ctx, n);
   if (status == DEA_OK) {
-    n->found = true;
+    n->base.reached = true; // its output is there, at whatever voltage
     int32_t code =
         n->driver.WriteAnalogF64(n->output, 1, 1, patience_s, BY_CHANNEL, &zero, NULL, NULL);
     status = judge(ctx, n, code, "put 0 V out");
@@ -282,27 +281,19 @@ static struct dea_zero zero(struct dea_context *ctx, const void *data,
   return (struct dea_zero){good ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN, NULL};
 }
 
-static dea_status open_it(struct dea_context *ctx, const void *data,
-                          const struct dea_protocol *protocol, struct dea_instrument **out)
+static dea_status open_it(struct dea_context *ctx, struct dea_instrument *instrument,
+                          const void *data, const struct dea_protocol *protocol)
 {
   const struct raw *raw = data;
-  struct nidaqmx *n = dea_alloc(ctx, 1, sizeof *n);
-  DEA_TRY_MEMORY(n != NULL);
-  n->base.type = &dea_instrument_nidaqmx;
+  struct nidaqmx *n = (struct nidaqmx *)instrument;
   n->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
   n->protocol = protocol;
   n->capacity = samples_of(n, raw->queue_s.si);
   n->scans_room = samples_of(n, scans_room_s);
   n->scans = dea_alloc(ctx, n->scans_room, sizeof *n->scans * (protocol->input_count + 1));
-  dea_status status = n->scans != NULL ? load(ctx, raw, n) : DEA_E_MEMORY;
-  status = status == DEA_OK ? set_up(ctx, n, wiring_values[raw->wiring.value]) : status;
-  if (status != DEA_OK) {
-    status = n->found ? dea_instrument_abandon(ctx, &n->base, status) : status;
-    close_it(ctx, &n->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = &n->base;
-  return DEA_OK;
+  DEA_TRY_MEMORY(n->scans != NULL);
+  DEA_TRY(ctx, load(ctx, raw, n));
+  return set_up(ctx, n, wiring_values[raw->wiring.value]);
 }
 
 /* Inputs first: they wait for the output's trigger. */
@@ -404,6 +395,7 @@ const struct dea_instrument_type dea_instrument_nidaqmx = {
     .name = "nidaqmx",
     .record = &dea_instrument_nidaqmx_record,
     .raw_size = sizeof(struct raw),
+    .size = sizeof(struct nidaqmx),
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS,
     .open = open_it,
     .start = start_nidaqmx,

@@ -183,28 +183,19 @@ static dea_status find_out(struct dea_context *ctx, struct optoncdt *o)
   return DEA_OK;
 }
 
-static dea_status open_it(struct dea_context *ctx, const void *data,
-                          const struct dea_protocol *protocol, struct dea_instrument **out)
+static dea_status open_it(struct dea_context *ctx, struct dea_instrument *instrument,
+                          const void *raw, const struct dea_protocol *protocol)
 {
-  struct optoncdt *o = dea_alloc(ctx, 1, sizeof *o);
+  struct optoncdt *o = (struct optoncdt *)instrument;
   (void)protocol;
-  DEA_TRY_MEMORY(o != NULL);
-  o->raw = *(const struct raw *)data;
-  o->base.type = &dea_instrument_optoncdt;
-  o->base.roles = DEA_GIVES_READINGS;
+  o->raw = *(const struct raw *)raw;
   o->upper = -1;
   o->last_s = NAN;
   o->late_s = INFINITY;
   dea_instrument_add_displacement(&o->base, &o->raw.name);
-  dea_status status =
-      dea_serial_open(ctx, "the optoNCDT", o->raw.device.text, (int)o->raw.baud.si, 0, &o->line);
-  status = status == DEA_OK ? find_out(ctx, o) : status;
-  if (status != DEA_OK) {
-    close_it(ctx, &o->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = &o->base;
-  return DEA_OK;
+  DEA_TRY(ctx, dea_serial_open(ctx, "the optoNCDT", o->raw.device.text, (int)o->raw.baud.si, 0,
+                               &o->line));
+  return find_out(ctx, o);
 }
 
 /* What came before the start is no part of the recording. */
@@ -231,6 +222,7 @@ const struct dea_instrument_type dea_instrument_optoncdt = {
     .name = "optoncdt",
     .record = &dea_instrument_optoncdt_record,
     .raw_size = sizeof(struct raw),
+    .size = sizeof(struct optoncdt),
     .roles = DEA_GIVES_READINGS,
     .check = check,
     .open = open_it,

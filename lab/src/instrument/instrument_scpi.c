@@ -834,13 +834,11 @@ static dea_status claim_supply(struct dea_context *ctx, struct scpi *s)
                   s->name);
 }
 
-static dea_status open_it(struct dea_context *ctx, const void *data,
-                          const struct dea_protocol *protocol, struct dea_instrument **out)
+static dea_status open_it(struct dea_context *ctx, struct dea_instrument *instrument,
+                          const void *raw, const struct dea_protocol *protocol)
 {
-  struct scpi *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_TRY_MEMORY(s != NULL);
-  s->raw = *(const struct raw *)data;
-  s->base.type = &dea_instrument_scpi;
+  struct scpi *s = (struct scpi *)instrument;
+  s->raw = *(const struct raw *)raw;
   s->base.roles = (s->raw.reading_count > 0 ? DEA_GIVES_READINGS : 0U) |
                   (s->raw.output.origin != DEA_ABSENT ? DEA_PLAYS_OUTPUT : 0U);
   for (size_t i = 0; i < s->raw.reading_count; i++) {
@@ -849,27 +847,15 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   }
   s->protocol = protocol;
   s->link.socket.descriptor = s->claim = -1;
-  dea_status status = DEA_OK;
   if ((s->base.roles & DEA_PLAYS_OUTPUT) != 0) {
-    status = begin_output(ctx, s);
+    DEA_TRY(ctx, begin_output(ctx, s));
   }
-  if (status == DEA_OK) {
-    status = connect_to(ctx, &s->raw, "", s->raw.timeout_s.si, &s->link);
-  }
-  if (status == DEA_OK) {
-    snprintf(s->name, sizeof s->name, "%s", s->link.socket.name);
-    memcpy(s->base.host, s->link.socket.host, sizeof s->base.host);
-    status = claim_supply(ctx, s);
-    status = status == DEA_OK ? set_up(ctx, s) : status;
-  }
-  if (status != DEA_OK) {
-    status =
-        s->link.socket.descriptor >= 0 ? dea_instrument_abandon(ctx, &s->base, status) : status;
-    close_it(ctx, &s->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = &s->base;
-  return DEA_OK;
+  DEA_TRY(ctx, connect_to(ctx, &s->raw, "", s->raw.timeout_s.si, &s->link));
+  snprintf(s->name, sizeof s->name, "%s", s->link.socket.name);
+  memcpy(s->base.host, s->link.socket.host, sizeof s->base.host);
+  DEA_TRY(ctx, claim_supply(ctx, s));
+  s->base.reached = true; // not before: what is set there may be another program's
+  return set_up(ctx, s);
 }
 
 static void address(const void *data, char *out, size_t size)
@@ -1047,6 +1033,7 @@ const struct dea_instrument_type dea_instrument_scpi = {
     .name = "scpi",
     .record = &dea_instrument_scpi_record,
     .raw_size = sizeof(struct raw),
+    .size = sizeof(struct scpi),
     .roles = DEA_PLAYS_OUTPUT | DEA_GIVES_READINGS,
     .check = check,
     .open = open_it,

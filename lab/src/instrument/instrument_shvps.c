@@ -103,10 +103,10 @@ static const struct dea_line_supply_language language = {
     .mark = "QF",
 };
 
-static dea_status open_it(struct dea_context *ctx, const void *raw,
-                          const struct dea_protocol *protocol, struct dea_instrument **out)
+static dea_status open_it(struct dea_context *ctx, struct dea_instrument *instrument,
+                          const void *raw, const struct dea_protocol *protocol)
 {
-  return dea_line_supply_open(ctx, &dea_instrument_shvps, &language, raw, protocol, out);
+  return dea_line_supply_open(ctx, instrument, &language, raw, protocol);
 }
 
 static struct dea_zero zero(struct dea_context *ctx, const void *raw,

@@ -194,27 +194,18 @@ static dea_status prepare(struct dea_context *ctx, struct sim *s)
   return DEA_OK;
 }
 
-static dea_status open_sim(struct dea_context *ctx, const void *data,
-                           const struct dea_protocol *protocol, struct dea_instrument **out)
+static dea_status open_sim(struct dea_context *ctx, struct dea_instrument *instrument,
+                           const void *raw, const struct dea_protocol *protocol)
 {
-  *out = NULL;
-  struct sim *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_TRY_MEMORY(s != NULL);
-  s->base.type = &dea_instrument_sim;
-  s->raw = *(const struct raw *)data;
+  struct sim *s = (struct sim *)instrument;
+  s->raw = *(const struct raw *)raw;
   s->protocol = protocol;
   s->random = (struct random){(uint64_t)s->raw.seed.si, NAN};
   s->real_time = s->raw.pace.value == REAL;
   s->base.patient = !s->real_time;
   const struct dea_sim_settings settings = settings_of(&s->raw);
-  dea_status status = dea_sim_bench_create(ctx, protocol, &settings, &s->bench);
-  status = status == DEA_OK ? prepare(ctx, s) : status;
-  if (status != DEA_OK) {
-    close_sim(ctx, &s->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = &s->base;
-  return DEA_OK;
+  DEA_TRY(ctx, dea_sim_bench_create(ctx, protocol, &settings, &s->bench));
+  return prepare(ctx, s);
 }
 
 // What is added to the truth ---------------------------------------------------------------------
@@ -423,6 +414,7 @@ const struct dea_instrument_type dea_instrument_sim = {
     .name = "sim",
     .record = &dea_instrument_sim_record,
     .raw_size = sizeof(struct raw),
+    .size = sizeof(struct sim),
     .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS | DEA_SENDS_PROFILES,
     .check = check,
     .open = open_sim,

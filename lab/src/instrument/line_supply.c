@@ -171,19 +171,17 @@ static dea_status set_up(struct dea_context *ctx, struct dea_line_supply *s)
   return check_range(ctx, s);
 }
 
-dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instrument_type *type,
+dea_status dea_line_supply_open(struct dea_context *ctx, struct dea_instrument *instrument,
                                 const struct dea_line_supply_language *language, const void *raw,
-                                const struct dea_protocol *protocol, struct dea_instrument **out)
+                                const struct dea_protocol *protocol)
 {
   static const struct dea_choice voltage = {.value = DEA_CHANNEL_VOLTAGE};
   static const struct dea_label no_unit;
-  struct dea_line_supply *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_TRY_MEMORY(s != NULL);
+  struct dea_line_supply *s = (struct dea_line_supply *)instrument;
   s->raw = *(const struct dea_line_supply_raw *)raw;
   s->raw_all = raw;
   s->language = language;
   s->protocol = protocol;
-  s->base.type = type;
   s->base.roles = DEA_PLAYS_OUTPUT;
   if (s->raw.channel.origin != DEA_ABSENT) {
     s->base.roles |= DEA_GIVES_READINGS;
@@ -196,20 +194,12 @@ dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instru
                                         .measure_interval_s = s->raw.interval_s.si};
   dea_timed_limits(&s->output, protocol);
   s->link.socket.descriptor = -1;
-  dea_status status = dea_timed_begin(ctx, &s->output);
-  if (status == DEA_OK) {
-    status = dea_serial_open(ctx, language->what, s->raw.device.text, (int)s->raw.baud.si, 0,
-                             &s->link.socket);
-  }
-  status = status == DEA_OK ? set_up(ctx, s) : status;
-  if (status != DEA_OK) {
-    status =
-        s->link.socket.descriptor >= 0 ? dea_instrument_abandon(ctx, &s->base, status) : status;
-    dea_line_supply_close(ctx, &s->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY(ctx, dea_timed_begin(ctx, &s->output));
+  DEA_TRY(ctx, dea_serial_open(ctx, language->what, s->raw.device.text, (int)s->raw.baud.si, 0,
+                               &s->link.socket));
+  s->base.reached = true;
+  DEA_TRY(ctx, set_up(ctx, s));
   s->raw_all = NULL;
-  *out = &s->base;
   return DEA_OK;
 }
 

@@ -100,9 +100,9 @@ dea_status dea_line_supply_query(struct dea_context *ctx, struct dea_line_supply
 // Of a kind's type; raw begins with struct dea_line_supply_raw.
 dea_status dea_line_supply_check(const struct dea_reader *reader, const void *raw,
                                  const struct dea_protocol *protocol);
-dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instrument_type *type,
+dea_status dea_line_supply_open(struct dea_context *ctx, struct dea_instrument *instrument,
                                 const struct dea_line_supply_language *language, const void *raw,
-                                const struct dea_protocol *protocol, struct dea_instrument **out);
+                                const struct dea_protocol *protocol);
 dea_status dea_line_supply_start(struct dea_context *ctx, struct dea_instrument *instrument);
 dea_status dea_line_supply_set(struct dea_context *ctx, struct dea_instrument *instrument,
                                const double *volts, size_t count);
@@ -120,6 +120,7 @@ void dea_line_supply_close(struct dea_context *ctx, struct dea_instrument *instr
 
 /* The members of a kind's type that all of them share. */
 #define DEA_LINE_SUPPLY_MEMBERS                                                                    \
-  .roles = DEA_PLAYS_OUTPUT | DEA_GIVES_READINGS, .start = dea_line_supply_start,                  \
-  .put = dea_line_supply_set, .get = dea_line_supply_get, .hold = dea_line_supply_hold,            \
-  .stop = dea_line_supply_stop, .address = dea_line_supply_address, .close = dea_line_supply_close
+  .size = sizeof(struct dea_line_supply), .roles = DEA_PLAYS_OUTPUT | DEA_GIVES_READINGS,          \
+  .start = dea_line_supply_start, .put = dea_line_supply_set, .get = dea_line_supply_get,          \
+  .hold = dea_line_supply_hold, .stop = dea_line_supply_stop, .address = dea_line_supply_address,  \
+  .close = dea_line_supply_close
