@@ -775,7 +775,8 @@ static dea_status add_numbers(struct dea_context *ctx, const struct sheet *s)
   DEA_TRY_MEMORY(numbers != NULL);
   tips.tolerance =
       dea_length_stretched_m(&plan->design->fabrication.tolerance.fibre, plan->device->pre_stretch);
-  const dea_status status = dea_design_numbers(ctx, plan->design, plan->device, 0, numbers, &count);
+  const dea_status status =
+      dea_design_numbers(ctx, plan->design, plan->device, 0, false, numbers, &count);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     if (numbers[i].tolerance > 0 && !is_again(s->layout, numbers, i)) {
       add_number(s, &numbers[i]);
