@@ -54,19 +54,19 @@ bool dea_solid_module_find(char *out, size_t size)
   return dea_module_find(module_file, out, size);
 }
 
-static const struct dea_model_type *module; // once a model was made
-
 /* It cannot be unloaded: MPI. */
-static dea_status open_module(struct dea_context *ctx)
+static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
 {
   const void *type = NULL;
-  if (module != NULL) { // written once: others read it out of turn
-    return DEA_OK;
-  }
   DEA_TRY(ctx,
           dea_module_open(ctx, module_file, "dea_solid_module", "the 3D engine", advice, &type));
-  module = type;
+  *out = type;
   return DEA_OK;
+}
+
+static const struct dea_model_type *module_of(const struct dea_model *model)
+{
+  return ((const struct dea_solid_head *)(const void *)model)->module;
 }
 
 dea_status dea_solid_module_symbol(struct dea_context *ctx, const char *name, const void **out)
@@ -78,8 +78,11 @@ dea_status dea_solid_module_symbol(struct dea_context *ctx, const char *name, co
 static dea_status create_inside(struct dea_context *ctx, const struct dea_device *device,
                                 const struct dea_model_settings *settings, struct dea_model **out)
 {
-  DEA_TRY(ctx, open_module(ctx));
-  return DEA_CHAIN(ctx, module->create(ctx, device, settings, out));
+  const struct dea_model_type *module = NULL;
+  DEA_TRY(ctx, open_module(ctx, &module));
+  DEA_TRY(ctx, module->create(ctx, device, settings, out));
+  ((struct dea_solid_head *)(void *)*out)->module = module;
+  return DEA_OK;
 }
 
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
@@ -93,47 +96,48 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
 {
   if (model != NULL) {
     dea_solid_enter();
-    module->destroy(ctx, model);
+    module_of(model)->destroy(ctx, model);
     dea_solid_leave(DEA_OK);
   }
 }
 
 static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(open_module(ctx)));
+  const struct dea_model_type *module = NULL;
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(open_module(ctx, &module)));
   return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(module->libraries(ctx, out, size)));
 }
 
 static void accept(struct dea_model *model)
 {
   dea_solid_enter();
-  module->accept(model);
+  module_of(model)->accept(model);
   dea_solid_leave(DEA_OK);
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
 {
-  return module->limit(model);
+  return module_of(model)->limit(model);
 }
 
 static const struct dea_event *passed(const struct dea_model *model)
 {
-  return module->passed(model);
+  return module_of(model)->passed(model);
 }
 
 static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t *count)
 {
-  return module->passes(model, count);
+  return module_of(model)->passes(model, count);
 }
 
 static const double *answers(const struct dea_model *model)
 {
-  return module->answers(model);
+  return module_of(model)->answers(model);
 }
 
 static void size(const struct dea_model *model, struct dea_model_size *out)
 {
-  module->size(model, out);
+  module_of(model)->size(model, out);
 }
 
 /* A function of struct dea_model_type in turn: what it hands on, and what it takes behind the
@@ -141,7 +145,7 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
 #define IN_TURN(name, arguments, ...)                                                              \
   static dea_status name(struct dea_context *ctx, struct dea_model *model, __VA_ARGS__)            \
   {                                                                                                \
-    return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(module->name arguments));                              \
+    return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(module_of(model)->name arguments));                    \
   }
 
 IN_TURN(solve, (ctx, model, voltage_V, out), double voltage_V, struct dea_load_point *out)

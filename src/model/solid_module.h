@@ -3,6 +3,13 @@
 
 #include "base/context.h"
 
+struct dea_model_type;
+
+/* What a model of the module begins with; filled where the module is called. */
+struct dea_solid_head {
+  const struct dea_model_type *module; // its own functions; static storage of the module
+};
+
 /* PETSc, MPI and MUMPS keep what they do in global variables: a call into the module is made
  * between these two, by one thread at a time, in the order in which the threads came. Calls in a
  * call are fine. The second returns its argument. */

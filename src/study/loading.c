@@ -213,7 +213,7 @@ static const struct settings *settings_of(const struct dea_design *design)
   return given != NULL ? given->values : NULL;
 }
 
-static bool asked(const struct dea_design *design)
+bool dea_loading_asked(const struct dea_design *design)
 {
   const struct settings *settings = settings_of(design);
   return settings != NULL && range_of(settings) != RANGES;
@@ -796,7 +796,7 @@ static const struct dea_figure figures[] = {
 const struct dea_study dea_study_loading = {
     .name = study_name,
     .keys = &section,
-    .asked = asked,
+    .asked = dea_loading_asked,
     .needs = "compute.loading.from and to, or turn_, force_, pressure_, charge_from and to",
     .own_models = true,
     .ability = "bodies and pressures",

@@ -9,6 +9,8 @@ struct dea_loaded {
   double value; // of the design's key, SI
 };
 
+/* Whether a design asks for it. */
+bool dea_loading_asked(const struct dea_design *design);
 /* A model at the end of the line at a voltage, the caller's, and where it is. On failure there is
  * none. */
 dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type *type,

@@ -1,4 +1,5 @@
 /* Study "modal": frequencies and shapes of small vibrations about voltages. */
+#include "study/modal.h"
 #include "base/schema.h"
 #include "study/observe.h"
 #include "study/study.h"
@@ -36,6 +37,12 @@ static const struct dea_record record = {
 
 static const struct dea_design_section section = {
     .key = study_name, .record = &record, .size = sizeof(struct settings)};
+
+bool dea_modal_asked(const struct dea_design *design)
+{
+  const struct dea_settings *settings = dea_design_settings(design, &section);
+  return settings != NULL && settings->written;
+}
 
 // Study ------------------------------------------------------------------------------------------
 

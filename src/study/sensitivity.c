@@ -6,6 +6,7 @@
 #include "study/force.h"
 #include "study/limit_slopes.h"
 #include "study/loading.h"
+#include "study/modal.h"
 #include "study/number_rows.h"
 #include "study/observe.h"
 #include "study/study.h"
@@ -385,7 +386,7 @@ static dea_status find_frequency(struct dea_context *ctx, const struct dea_model
   struct dea_field_mesh *shapes;
   const struct settings *settings = dea_design_settings(result->design, &section)->values;
   const bool asked =
-      dea_study_asked(result->design, "modal") || dea_result_find(result, type->name, "modal") != NULL;
+      dea_modal_asked(result->design) || dea_result_find(result, type->name, "modal") != NULL;
   if (type->modes != NULL && asked) {
     stop->mode_count = (size_t)settings->modes.si;
     DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, stop->mode_count, modes, &shapes));
@@ -612,7 +613,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   for (size_t i = 0; type->indent != NULL && i < dea_force_stops(result->design); i++) {
     DEA_TRY(ctx, press(ctx, type, result, i, voltages_V, count));
   }
-  for (size_t i = 0; type->move != NULL && i < count && dea_study_asked(result->design, "loading"); i++) {
+  for (size_t i = 0; type->move != NULL && i < count && dea_loading_asked(result->design); i++) {
     DEA_TRY(ctx, load(ctx, type, result, voltages_V[i]));
   }
   for (size_t i = 0; i < settings->stretch_count; i++) {

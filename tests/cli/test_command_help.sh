@@ -77,7 +77,6 @@ done <"$folder/tables"
 expect 0 "doctor" dea doctor
 has out "HDF5"
 has out "materials"
-has out "dea studio"
 expect 2 "doctor with an argument" dea doctor now
 
 # completion: what bash offers for a command line that ends in the word to be completed; the lines

@@ -9,6 +9,7 @@
 #include "model/solid/model3d/indent.h"
 #include "model/solid/model3d/plies.h"
 #include "model/solid/model3d/solid_observe.h"
+#include "model/solid_module.h"
 
 /* What a state belongs to beside the solid's mesh and materials. */
 struct dea_model_marks {
@@ -61,6 +62,7 @@ struct dea_gradient_places {
 };
 
 struct dea_model {
+  struct dea_solid_head head; // first
   struct dea_solver_state at;
   const struct dea_device *device;
   const struct dea_layout *layout; // of the mesh

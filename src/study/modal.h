@@ -1,0 +1,9 @@
+/* What study "modal" tells of a design. */
+#pragma once
+
+#include "design/design.h"
+
+#include <stdbool.h>
+
+/* Whether a design asks for it. */
+bool dea_modal_asked(const struct dea_design *design);
