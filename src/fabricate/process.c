@@ -15,7 +15,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* ---- the file: headings, notes, steps and tables as HTML that needs nothing else ---- */
+// The file: headings, notes, steps and tables as HTML that needs nothing else ---------------------
 
 enum block_kind {
   BLOCK_TITLE, // the first block
@@ -157,7 +157,7 @@ struct sheet {
   struct document *to;
 };
 
-/* ---- amounts ---- */
+// Amounts -----------------------------------------------------------------------------------------
 
 /* How much larger the flat film is than the unstretched one. */
 static double stretched_area(const struct dea_layout_ply *ply)
@@ -247,7 +247,7 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
   out->frame_sheet_area_m2 = (plan->round ? pi : 4) * plan->frame_m[0] * plan->frame_m[1];
 }
 
-/* ---- bill of materials ---- */
+// Bill of materials -------------------------------------------------------------------------------
 
 /* A row of it: for what, which material, how much of one and of all; a volume of NAN is left out.
  */
@@ -364,7 +364,7 @@ static void add_materials(const struct sheet *s)
   }
 }
 
-/* ---- steps ---- */
+// Steps -------------------------------------------------------------------------------------------
 
 /* Sides of a part, or its diameter. */
 static void write_size(const struct sheet *s, const struct dea_part *part, char *out)
@@ -645,7 +645,7 @@ static void add_supports(const struct sheet *s)
   }
 }
 
-/* ---- check list ---- */
+// Check list --------------------------------------------------------------------------------------
 
 /* A thickness in um, another length in mm. */
 static void write_length(char out[NUMBER], double length_m, bool thickness)

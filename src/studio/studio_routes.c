@@ -414,8 +414,7 @@ static void get_compare(struct work *w)
   }
 }
 
-// Runs as HTML, by sections of the report
-// ----------------------------------------------------------
+// Runs as HTML, by sections of the report ---------------------------------------------------------
 
 enum { RUNS_MAX = 6 };
 

@@ -291,8 +291,8 @@ static dea_status check_film(struct dea_context *ctx, const struct dea_protocol 
 
 // Keys that would switch an interlock off ---------------------------------------------------------
 
-/* Without a word: limits that nothing can exceed, that take
- * too long, or that an input cannot see. The numbers are derived in docs/theory/interlocks.md. */
+/* Limits that nothing can exceed, that take too long, or that an input cannot see. The numbers are
+ * derived in docs/theory/interlocks.md. */
 
 static const double trip_longest_s = 0.1;  // that a fault may last
 static const double fault_most_J = 10;     // that it may deliver in that time
