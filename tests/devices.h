@@ -46,18 +46,6 @@ static inline struct dea_device test_disc(struct dea_material film, double pre_s
   return d;
 }
 
-/* A disc of a soft film of 30 um that pulls in at 330.6 V. */
-static inline struct dea_device test_soft_disc(void)
-{
-  struct dea_device d =
-      test_disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 1.2, 2.6e-3, 2.6 / 15.5, 0);
-  d.film.permittivity.at_rest = 4.8;
-  d.film_thickness_unstretched_m = 30e-6;
-  d.film_thickness_m = 30e-6 / 1.44;
-  d.frame_radius_m = 15.5e-3;
-  return d;
-}
-
 /* The paper's actuator as built with so many fibres, for model 3d. */
 static inline struct dea_device test_star(int fibres)
 {
