@@ -11,7 +11,7 @@ enum { HEAD_BYTES = 1 << 20 }; // in which its letters are looked at
 /* NULL: there is no mark of UTF-16. */
 static const char *utf16_of(const unsigned char *bytes, size_t length)
 {
-  const unsigned mark = length < 2 ? 0 : bytes[0] << 8 | bytes[1];
+  const unsigned mark = length < 2 ? 0U : (unsigned)bytes[0] << 8 | bytes[1];
   return mark == 0xfffe ? "UTF-16LE" : mark == 0xfeff ? "UTF-16BE" : NULL;
 }
 
