@@ -25,7 +25,7 @@ import tempfile
 OWN_TESTS = [
     ("lab/src/reduce/figures.c", "cli_reduce"),
     ("lab/src/reduce/", "lab_reduce_parts lab_reduce_little lab_reduce"),
-    ("src/model/solid/point/tension.c", "solid_tension"),
+    ("src/model/solid/point/tension_field.c", "solid_tension"),
     ("src/model/solid/mesh/cuts.c", "solid_plate"),
     ("src/model/solid/element/", "solid_recover solid_element"),
     ("src/model/solid/recovery/", "solid_recover"),
@@ -78,7 +78,7 @@ KNOWN = [
     ("src/model/solid/element/hex.c", "if (status == DEA_OK && E == NULL && thin_V_per_m != 0) {"),
     ("src/model/solid/mesh/cuts.c", "if (!(length / widest < (double)max && first > 0 && last > 0))"),
     ("lab/src/reduce/order_statistics.c", "size_t more = *room > 0 ? 2 * *room : 32;"),
-    ("src/model/solid/point/tension.c", "double low = l > 1 ? l : 1, high = low, stress = 0, slope;"),
+    ("src/model/solid/point/tension_field.c", "double low = l > 1 ? l : 1, high = low, stress = 0, slope;"),
     ("lab/src/reduce/discharges.c", "if (s->plateau_count == 0 && n > 0) {"),
     ("lab/src/reduce/level.c", "if (supports(l, x[i]) && fabs(off) <= limit) {"),
     ("lab/src/reduce/figures.c", "panel->x_min = table->rows > 0 ? table->time_s[0] : 0.0;"),

@@ -5,7 +5,7 @@
 #include "base/arena.h"
 #include "explore/evaluator.h"
 #include "explore/explore_file.h"
-#include "job/device_fit_model.h"
+#include "job/device_evaluation.h"
 #include "study/critical.h"
 
 /* What is kept of a design: a column of load points, what a monitor of a device made of plies

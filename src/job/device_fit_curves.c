@@ -1,5 +1,5 @@
 /* Measured curves of a device, and the points of the model that they ask for. */
-#include "job/device_fit_model.h"
+#include "job/device_evaluation.h"
 
 #include "base/file.h"
 #include "base/sort.h"

@@ -1,5 +1,5 @@
 /* The design of a device as it was fitted, as a file that every command takes. */
-#include "job/device_fit_model.h"
+#include "job/device_evaluation.h"
 
 #include "base/file.h"
 #include "base/units.h"

@@ -1,6 +1,6 @@
 /* Parameters of a fit of a device: numbers of its design with where the search begins, bounds and
  * priors. */
-#include "job/device_fit_model.h"
+#include "job/device_evaluation.h"
 
 #include "base/units.h"
 #include "material/catalogue.h"

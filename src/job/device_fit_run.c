@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/yaml_write.h"
-#include "job/device_fit_model.h"
+#include "job/device_evaluation.h"
 #include "result/observation.h"
 #include "result/provenance.h"
 #include "study/design_file.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/context.h"
-#include "instrument/zero.h"
+#include "instrument/output_zero.h"
 
 struct dea_protocol;
 

@@ -1,6 +1,6 @@
 #include "drive/drive_watch.h"
 
-#include "instrument/zero.h"
+#include "instrument/output_zero.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
  * channels' factors. */
 #pragma once
 
-#include "instrument/zero.h"
+#include "instrument/output_zero.h"
 #include "protocol/protocol.h"
 
 enum dea_instrument_role {

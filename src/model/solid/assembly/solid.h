@@ -9,7 +9,7 @@
 #pragma once
 
 #include "model/solid/assembly/ranks.h"
-#include "model/solid/assembly/settings.h"
+#include "model/solid/assembly/solver_settings.h"
 #include "model/solid/load/load.h"
 #include "model/solid/mesh/grid.h"
 

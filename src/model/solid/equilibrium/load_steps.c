@@ -6,8 +6,8 @@
 #include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
-#include "model/solid/equilibrium/follow.h"
 #include "model/solid/equilibrium/modes.h"
+#include "model/solid/equilibrium/modified_newton.h"
 #include "model/solid/equilibrium/newton.h"
 #include "model/solid/equilibrium/presolve_check.h"
 

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "model/solid/point/part_material.h"
-#include "model/solid/point/tension.h"
+#include "model/solid/point/tension_field.h"
 
 /* Whether a membrane can be of it: DEA_E_UNSUPPORTED without an isotropic law. */
 dea_status dea_membrane_check(const struct dea_part_material *part_material);

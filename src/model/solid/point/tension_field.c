@@ -1,4 +1,4 @@
-#include "model/solid/point/tension.h"
+#include "model/solid/point/tension_field.h"
 
 #include "base/context.h"
 

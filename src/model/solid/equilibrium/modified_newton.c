@@ -1,4 +1,4 @@
-#include "model/solid/equilibrium/follow.h"
+#include "model/solid/equilibrium/modified_newton.h"
 
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/bodies.h"

@@ -1,4 +1,4 @@
-#include "job/device_fit_model.h"
+#include "job/device_evaluation.h"
 
 #include "result/compare.h"
 #include "study/force.h"

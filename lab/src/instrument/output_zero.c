@@ -1,4 +1,4 @@
-#include "instrument/zero.h"
+#include "instrument/output_zero.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "model/solid/assembly/settings.h"
+#include "model/solid/assembly/solver_settings.h"
 
 #include <limits.h>
 #include <math.h>
