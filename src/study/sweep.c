@@ -184,7 +184,7 @@ static dea_status report_trust(struct dea_context *ctx, const struct dea_model_t
   if ((trust.doubts | trust.dangers | trust.limits) != 0) {
     dea_trust_text(&trust, &text);
     if ((trust.doubts >> DEA_FLAG_SLACK & 1u) != 0 && type->push != NULL) {
-      dea_text_add(&text, " (--study states looks for them, and for their mean)");
+      dea_text_add(&text, " (--study states looks for them)");
     }
     status = text.failed ? DEA_E_MEMORY
                          : dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
