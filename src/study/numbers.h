@@ -6,7 +6,7 @@
 #include "device/device.h"
 #include "model/model.h"
 
-enum { DEA_NUMBERS_MAX = 256 };
+enum { DEA_NUMBERS_MAX = 2048 }; // 100 plies, the most of a design, have some 1,200
 
 /* Materials of a device: those of a disc, then those of the plies of its layout. */
 enum { DEA_OF_FILM, DEA_OF_ELECTRODES, DEA_OF_FIBRES, DEA_OF_PLIES };

@@ -101,6 +101,31 @@ TEST(test_every_name)
   assert_true(ask_for_names(parts) >= 17);
 }
 
+/* The most plies that a design has: the last one's material is among the numbers too. */
+TEST(test_most_plies)
+{
+  static char text[16000];
+  size_t at = (size_t)snprintf(text, sizeof text,
+                               "dea: 1\ntitle: pile\nshapes: [{name: a, kind: circle, radius: 9 "
+                               "mm}]\nmonitors: [{name: m, at: [0 mm, 0 mm]}]\n"
+                               "electrodes:\n  - {ply: p1, side: bottom, shape: a, channel: "
+                               "ground}\n  - {ply: p1, side: top, shape: a, channel: drive}\n"
+                               "supports: [{edge: a}]\ncompute: {models: [3d], voltage: {values: "
+                               "[1 kV]}}\nplies:\n");
+  for (int i = 1; i <= 100; i++) {
+    at += (size_t)snprintf(text + at, sizeof text - at,
+                           "  - {name: p%d, shape: a, material: elastosil-2030, thickness: 100 um, "
+                           "pre_stretch: [1.2, 1.3]}\n",
+                           i);
+  }
+  command_write("design.yaml", text);
+  if (count_errors("plies.p100.density", 970, "kg/m^3", "") > 0) {
+    fail_msg("%s", command_err);
+  }
+  assert_int_equal(count_errors("shapes.a.radius", 9e-3, "m", ""), 0);
+  assert_null(strstr(command_err, "are left out"));
+}
+
 /* At next to no voltage C = eps_0 eps_r pi r^2 l^2 / h, so that a limit of the capacitance is one
  * of the permittivity of the ply; the design that is written has it too. */
 TEST(test_permittivity_of_a_ply)
