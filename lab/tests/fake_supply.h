@@ -81,6 +81,7 @@ struct supply {
   // of the test
   pthread_t thread;
   pthread_mutex_t lock;
+  bool started;
   atomic_bool ended;
   atomic_int fault;
   // of the thread, under the lock
@@ -428,6 +429,7 @@ static inline void supply_start(struct supply *s)
   s->fed_s = (double)NAN;
   s->noise = 1;
   s->count = 0;
+  s->started = true;
   atomic_store(&s->ended, false);
   if (s->answer != NULL) {
     supply_open_line(s);
@@ -441,6 +443,7 @@ static inline void supply_start(struct supply *s)
 
 static inline void supply_stop(struct supply *s)
 {
+  s->started = false;
   atomic_store(&s->ended, true);
   pthread_join(s->thread, NULL);
   if (s->answer != NULL) {

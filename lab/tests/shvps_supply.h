@@ -82,6 +82,6 @@ static inline pid_t shvps_playing(struct supply as, const char *more)
   shvps_set_up(as);
   shvps_protocol(2, 20, more);
   pid_t child = supply_arm_checked("played.h5");
-  assert_true(supply_reaches(&hv, 1000, 10));
+  assert_true(supply_reaches(&hv, 1000, 60));
   return child;
 }

@@ -28,10 +28,10 @@ TEST(test_one_supply_one_program)
 {
   supply_set_up((struct supply){0}, 5, SUPPLY_MEASURES);
   pid_t first = supply_arm("first.h5");
-  assert_true(supply_reaches(&hv, 1000, 10));
+  assert_true(supply_reaches(&hv, 1000, 60));
   assert_int_equal(supply_wait(supply_arm("second.h5"), 10), 6);
   assert_contains(command_err, "another program drives this supply", "armed by process");
-  assert_true(supply_reaches(&hv, 1500, 10));
+  assert_true(supply_reaches(&hv, 1500, 60));
   assert_int_equal(supply_wait(first, 20), 0);
   assert_true(supply_volts(&hv) <= supply_zero_V);
   supply_stop(&hv);
@@ -46,7 +46,7 @@ TEST(test_two_names_of_one_supply)
   supply_protocol(&hv, 5, SUPPLY_MEASURES);
   assert_int_equal(supply_wait(supply_arm("second.h5"), 10), 6);
   assert_contains(command_err, "is driven by another program on this computer");
-  assert_true(supply_reaches(&hv, 1500, 10)); // and the first one plays on
+  assert_true(supply_reaches(&hv, 1500, 60)); // and the first one plays on
   int code = supply_run_dea(supply_zero, 20);
   assert_true(code == 6 && !supply_said_zero());
   supply_host = "127.0.0.1";
@@ -146,7 +146,7 @@ TEST(test_watchdog_of_the_supply)
   assert_true(isnan(hv.fed_s));
   supply_protocol(&hv, 20, keys);
   pid_t child = supply_arm("dead.h5");
-  assert_true(supply_reaches(&hv, 1000, 10));
+  assert_true(supply_reaches(&hv, 1000, 60));
   kill(child, SIGSTOP); // it must not notice
   supply_signal_guard(child, SIGKILL);
   kill(child, SIGKILL);
@@ -206,7 +206,7 @@ TEST(test_neighbour)
     neighbour = (struct supply){.serial = 2};
     supply_set_up((struct supply){.serial = 1}, 20, SUPPLY_MEASURES);
     pid_t child = supply_begin("drive p.yaml --arm --checked -f -o n.h5");
-    assert_true(supply_reaches(&hv, 1000, 10));
+    assert_true(supply_reaches(&hv, 1000, 60));
     assert_int_equal(killed ? kill(child, SIGSTOP) : 0, 0);
     swap(&hv, &neighbour);
     assert_int_equal(killed ? kill(child, SIGKILL) : 0, 0);

@@ -29,7 +29,7 @@ static pid_t playing(double volts, const char *waveform, const char *more)
   shvps_set_up((struct supply){0});
   shvps_protocol_of(hv.device, waveform, more);
   pid_t child = supply_arm_checked("played.h5");
-  assert_true(supply_reaches(&hv, volts, 10));
+  assert_true(supply_reaches(&hv, volts, 60));
   return child;
 }
 
@@ -134,7 +134,7 @@ TEST(test_two_names_of_one_line)
   snprintf(in_use, sizeof in_use, "is in use by process %d (dea-lab): end that first", (int)child);
   assert_int_equal(code, 6);
   assert_contains(command_err, in_use);
-  assert_true(supply_reaches(&hv, 1500, 10) && hv.hurried == 0); // and the first one plays on
+  assert_true(supply_reaches(&hv, 1500, 60) && hv.hurried == 0); // and the first one plays on
   code = supply_run_dea(supply_zero, 60);
   assert_true(code == 6 && !supply_said_zero());
   assert_contains(command_err, "which may set another voltage");

@@ -68,7 +68,7 @@ TEST(test_faults)
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     begin("SM1 1 255 1 100 0 0 0");
     pid_t child = supply_arm_checked("o.h5");
-    assert_true(supply_reaches(&hv, 1000, 10));
+    assert_true(supply_reaches(&hv, 1000, 60));
     atomic_store(&hv.fault, cases[i].fault);
     assert_int_equal(supply_wait(child, 20), 6);
     assert_false(supply_said_zero());

@@ -81,7 +81,7 @@ TEST(test_stuck_in_a_pause)
                     ", behind: 0.5 s");
   shvps_safety = usual;
   pid_t child = supply_arm_checked("stuck.h5");
-  assert_true(supply_reaches(&hv, 1900, 10));
+  assert_true(supply_reaches(&hv, 1900, 60));
   double since_s = dea_clock_s();
   supply_go_wrong(&hv, &stuck);
   int code = supply_wait(child, 40);
@@ -109,7 +109,7 @@ TEST(test_ramp_of_one_that_is_off)
   shvps_protocol_of(hv.device, "kind: square, low: 0 kV, high: 2 kV, cycles: 1, frequency: 0.01 Hz",
                     ", interval: 10 ms");
   pid_t child = supply_arm_checked("off.h5");
-  assert_true(supply_reaches(&hv, 1990, 10));
+  assert_true(supply_reaches(&hv, 1990, 60));
   assert_int_equal(supply_wait(child, 40), 6);
   assert_contains(command_err, "off by more than safety.readback_error");
   if (!supply_said_zero()) {
@@ -129,7 +129,7 @@ TEST(test_lie_from_the_start)
   shvps_set_up((struct supply){.slew_V_per_s = 500});
   shvps_protocol(2, 20, ", behind: 0.5 s");
   pid_t child = supply_arm_checked("lie.h5");
-  assert_true(supply_reaches(&hv, 5, 10));
+  assert_true(supply_reaches(&hv, 5, 60));
   supply_go_wrong(&hv, &lies);
   int code = supply_wait(child, 20);
   supply_check_said(code);
@@ -166,7 +166,7 @@ static pid_t begin_beside(char own[64])
   snprintf(hv.device, sizeof hv.device, "%s", line);
   shvps_protocol(2, 20, ", behind: 0.5 s");
   pid_t child = supply_arm_checked("beside.h5");
-  assert_true(supply_reaches(&hv, 1000, 10));
+  assert_true(supply_reaches(&hv, 1000, 60));
   return child;
 }
 
