@@ -38,9 +38,9 @@ struct dea_solid_object {
   struct dea_solid_continuation *path;
   struct dea_continuation_point point; // of the path
   size_t mode_count;
-  double *mode_square, *mode_shape;
-  size_t channel_count; // ground not counted
-  double *charges;      // voltages, charges, both matrices of capacitances; NULL: not asked for
+  double *mode_square, *mode_shape; // the second in the memory of the first
+  size_t channel_count;             // ground not counted
+  double *charges; // voltages, charges, both matrices of capacitances; NULL: not asked for
   size_t body_count;
   double *body_values; // [4][body_count][3] shift, turn, force, moment
   size_t spring_count;
@@ -392,7 +392,6 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_free(ctx, object->between);
     dea_plane_mesh_destroy(ctx, object->plane);
     dea_free(ctx, object->mode_square);
-    dea_free(ctx, object->mode_shape);
     dea_free(ctx, object->charges);
     dea_free(ctx, object->body_values);
     dea_free(ctx, object);
@@ -717,19 +716,13 @@ static dea_status modes(struct dea_context *ctx, struct dea_solid_object *object
   if (count == 0 || count > DEA_MODES_MAX) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d modes, not %zu", DEA_MODES_MAX, count);
   }
-  double *square = dea_alloc(ctx, count, sizeof *square);
-  double *shape = dea_alloc(ctx, count * dofs, sizeof *shape);
-  dea_status status = square != NULL && shape != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = dea_solid_modes_lowest(ctx, object->solid, DEA_MODES_BY_MASS, count, square, shape);
-  }
-  if (status != DEA_OK) {
-    dea_free(ctx, square);
-    dea_free(ctx, shape);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  double *square = dea_alloc(ctx, count * (1 + dofs), sizeof *square);
+  DEA_TRY_MEMORY(square != NULL);
+  double *shape = square + count;
+  DEA_TRY_ELSE(ctx,
+               dea_solid_modes_lowest(ctx, object->solid, DEA_MODES_BY_MASS, count, square, shape),
+               dea_free(ctx, square));
   dea_free(ctx, object->mode_square);
-  dea_free(ctx, object->mode_shape);
   for (size_t i = 0; i < count; i++) { // omega^2 -> f, negative where it is unstable
     square[i] = copysign(sqrt(fabs(square[i])), square[i]) / (2 * acos(-1.0));
   }
