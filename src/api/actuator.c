@@ -58,7 +58,7 @@ dea_status api_model_find(dea_context *ctx, const char *name, const struct dea_m
     for (size_t i = 0; i < count && i < sizeof known / sizeof known[0]; i++) {
       known[i] = all[i]->name;
     }
-    return api_unknown(ctx, "model", name, known, count);
+    return dea_unknown_name(ctx->inner, "model", name, known, count);
   }
   return DEA_OK;
 }
@@ -109,10 +109,7 @@ dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const c
   status = status == DEA_OK
                ? dea_monitor_set_init(inner, actuator->type, actuator->device, &actuator->monitors)
                : status;
-  if (status != DEA_OK) {
-    dea_actuator_free(actuator);
-    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(inner, status, dea_actuator_free(actuator));
   *out = actuator;
   return DEA_OK;
 }
@@ -174,7 +171,7 @@ dea_status dea_actuator_get(dea_context *ctx, const dea_actuator *actuator, cons
     const char **known = dea_column_keys(ctx->inner);
     DEA_TRY_MEMORY(known != NULL);
     dea_status status =
-        api_unknown(ctx, "quantity", key, known, (size_t)dea_column_count(ctx->inner));
+        dea_unknown_name(ctx->inner, "quantity", key, known, (size_t)dea_column_count(ctx->inner));
     dea_free(ctx->inner, known);
     return status;
   } else {

@@ -85,13 +85,13 @@ struct api_numbers {
 };
 /* DEA_E_ARGUMENT where one is no finite number. */
 dea_status api_check_numbers(dea_context *ctx, const struct api_numbers *numbers, size_t count);
+/* What an older or a newer caller has filled, over the defaults of all members. */
+#define DOOR_COPY(all, given)                                                                      \
+  memcpy(&(all), given, (given)->size < sizeof(all) ? (given)->size : sizeof(all))
 #define DOOR_CHECK(ctx, ...)                                                                       \
   DEA_TRY((ctx)->inner, api_check_numbers(ctx, (const struct api_numbers[]){__VA_ARGS__},          \
                                           sizeof((const struct api_numbers[]){__VA_ARGS__}) /      \
                                               sizeof(struct api_numbers)))
-/* "there is no WHAT 'NAME'", with the nearest of those that there are. */
-dea_status api_unknown(dea_context *ctx, const char *what, const char *name,
-                       const char *const known[], size_t count);
 /* Room for one more item of that size in an array in the arena: where the items are now, NULL
  * without memory. */
 void *api_grow(struct dea_arena *memory, void *items, size_t count, size_t *capacity, size_t size);

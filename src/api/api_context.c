@@ -4,7 +4,6 @@
 #include "base/version.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 const char *dea_version(void)
@@ -42,45 +41,28 @@ static void on_finding(void *user, const struct dea_finding *finding)
   }
 }
 
-static void *resize_memory(void *user, void *pointer, size_t size)
-{
-  const dea_context_options *options = user;
-  return options->resize != NULL ? options->resize(options->user, pointer, size)
-                                 : realloc(pointer, size);
-}
-
-static void release_memory(void *user, void *pointer)
-{
-  const dea_context_options *options = user;
-  if (options->release != NULL) {
-    options->release(options->user, pointer);
-  } else {
-    free(pointer);
-  }
-}
-
 dea_status dea_context_new(const dea_context_options *options, dea_context **out)
 {
   dea_context_options all = DEA_CONTEXT_OPTIONS_INIT;
   *out = NULL;
   if (options != NULL) { // of an older or a newer caller
-    memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
+    DOOR_COPY(all, options);
   }
   if ((all.resize == NULL) != (all.release == NULL)) {
     return DEA_E_ARGUMENT;
   }
-  dea_context *ctx = resize_memory(&all, NULL, sizeof *ctx);
-  DEA_TRY_MEMORY(ctx != NULL);
-  *ctx = (dea_context){.options = all};
-  const struct dea_allocator allocator = {resize_memory, release_memory, &ctx->options};
-  dea_status status = dea_context_create(&allocator, &ctx->inner);
-  if (status != DEA_OK) {
-    release_memory(&all, ctx);
-    return status;
+  const struct dea_allocator own = {all.resize, all.release, all.user};
+  struct dea_context *inner;
+  DEA_TRY_STATUS(dea_context_create(all.resize != NULL ? &own : NULL, &inner));
+  dea_context *ctx = dea_alloc(inner, 1, sizeof *ctx);
+  if (ctx == NULL) {
+    dea_context_destroy(inner);
+    return DEA_E_MEMORY;
   }
-  dea_context_set_progress(ctx->inner, all.progress != NULL ? on_progress : NULL, ctx);
-  dea_context_set_interrupt_fn(ctx->inner, all.interrupt != NULL ? on_interrupt : NULL, ctx);
-  dea_context_set_finding_sink(ctx->inner, all.note != NULL ? on_finding : NULL, ctx);
+  *ctx = (dea_context){.inner = inner, .options = all};
+  dea_context_set_progress(inner, all.progress != NULL ? on_progress : NULL, ctx);
+  dea_context_set_interrupt_fn(inner, all.interrupt != NULL ? on_interrupt : NULL, ctx);
+  dea_context_set_finding_sink(inner, all.note != NULL ? on_finding : NULL, ctx);
   *out = ctx;
   return DEA_OK;
 }
@@ -88,10 +70,10 @@ dea_status dea_context_new(const dea_context_options *options, dea_context **out
 void dea_context_free(dea_context *ctx)
 {
   if (ctx != NULL) {
-    dea_free(ctx->inner, ctx->shown);
-    dea_context_destroy(ctx->inner);
-    dea_context_options options = ctx->options;
-    release_memory(&options, ctx);
+    struct dea_context *inner = ctx->inner;
+    dea_free(inner, ctx->shown);
+    dea_free(inner, ctx);
+    dea_context_destroy(inner);
   }
 }
 
@@ -160,16 +142,6 @@ dea_status api_check_numbers(dea_context *ctx, const struct api_numbers *numbers
     }
   }
   return DEA_OK;
-}
-
-dea_status api_unknown(dea_context *ctx, const char *what, const char *name,
-                       const char *const known[], size_t count)
-{
-  const char *nearest = count > 0 ? dea_nearest_name(name, known, count) : NULL;
-  return nearest != NULL
-             ? dea_fail(ctx->inner, DEA_E_ARGUMENT,
-                        "there is no %s '%.100s'; did you mean '%.100s'?", what, name, nearest)
-             : dea_fail(ctx->inner, DEA_E_ARGUMENT, "there is no %s '%.100s'", what, name);
 }
 
 void *api_grow(struct dea_arena *memory, void *items, size_t count, size_t *capacity, size_t size)

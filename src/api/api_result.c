@@ -22,8 +22,8 @@
 static dea_run_options run_options_of(const dea_run_options *options)
 {
   dea_run_options all = DEA_RUN_OPTIONS_INIT;
-  if (options != NULL) { // of an older or a newer caller
-    memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
+  if (options != NULL) {
+    DOOR_COPY(all, options);
   }
   return all;
 }
@@ -85,21 +85,15 @@ static void enter(struct filling *f, const char *format, ...)
   va_end(args);
 }
 
-/* Points, `stride` bytes from one to the next: a column of those quantities that some point has. */
-static void add_points(struct filling *f, const struct dea_load_point *points, size_t stride,
-                       size_t count)
+/* Points: a column of those quantities that some point has. */
+static void add_points(struct filling *f, const struct dea_load_point *points, size_t count)
 {
-  const char *bytes = (const char *)points;
   const struct dea_context *ctx = f->result->ctx->inner;
-  for (int c = 0; c < dea_column_count(ctx) && count > 0; c++) {
-    bool any = false;
-    for (size_t i = 0; i < count && !any; i++) {
-      const void *at = bytes + i * stride;
-      any = !isnan(dea_point_get(at, c));
-    }
+  for (int c = 0; c < dea_column_count(ctx); c++) {
+    const bool any = dea_points_have(points, count, c);
     double *values = any ? add_array(f, dea_column_at(ctx, c), count) : NULL;
     for (size_t i = 0; i < count && values != NULL; i++) {
-      values[i] = dea_point_get((const void *)(bytes + i * stride), c);
+      values[i] = dea_point_get(&points[i], c);
     }
   }
   for (int k = 0; k < DEA_POINT_STATES && count > 0; k++) {
@@ -107,7 +101,7 @@ static void add_points(struct filling *f, const struct dea_load_point *points, s
     const struct dea_column column = {state->key, "1", "1", 1, state->key, state->meaning};
     double *values = add_array(f, &column, count);
     for (size_t i = 0; i < count && values != NULL; i++) {
-      values[i] = state->get((const void *)(bytes + i * stride));
+      values[i] = state->get(&points[i]);
     }
   }
 }
@@ -125,14 +119,14 @@ static void add_events(struct filling *f, const struct dea_curve *curve, const c
       }
     }
     enter(f, "%s/%s", folder, dea_event_name((enum dea_event_kind)kind));
-    add_points(f, points, sizeof *points, count);
+    add_points(f, points, count);
   }
 }
 
 static void add_curve(struct filling *f, const struct dea_curve *curve, const char *folder)
 {
   enter(f, "%s", folder);
-  add_points(f, curve->points, sizeof *curve->points, curve->count);
+  add_points(f, curve->points, curve->count);
   add_text(f, "status", dea_status_name(curve->status));
   add_text(f, "stopped", curve->stopped);
   add_events(f, curve, folder);
@@ -148,10 +142,18 @@ static void add_profile(struct filling *f, const struct dea_profile_record *reco
   }
 }
 
+static void add_number(struct filling *f, const char *key, const char *unit, const char *meaning,
+                       double value)
+{
+  const struct dea_column column = {key, unit, unit, 1, key, meaning};
+  double *values = isnan(value) ? NULL : add_array(f, &column, 1);
+  if (values != NULL) {
+    values[0] = value;
+  }
+}
+
 static void add_profiles(struct filling *f, const struct dea_result *inner)
 {
-  static const struct dea_column voltage = {"voltage_V", "V", "kV",
-                                            1e-3,        "V", "voltage between the electrodes"};
   for (size_t i = 0; i < inner->profile_count; i++) {
     const struct dea_profile_record *record = &inner->profiles[i];
     size_t number = 0;
@@ -160,20 +162,7 @@ static void add_profiles(struct filling *f, const struct dea_result *inner)
     }
     enter(f, "%s/profiles/%04zu", record->model, number);
     add_profile(f, record);
-    double *values = add_array(f, &voltage, 1);
-    if (values != NULL) {
-      values[0] = record->voltage_V;
-    }
-  }
-}
-
-static void add_number(struct filling *f, const char *key, const char *unit, const char *meaning,
-                       double value)
-{
-  const struct dea_column column = {key, unit, unit, 1, key, meaning};
-  double *values = isnan(value) ? NULL : add_array(f, &column, 1);
-  if (values != NULL) {
-    values[0] = value;
+    add_number(f, "voltage_V", "V", "voltage between the electrodes", record->voltage_V);
   }
 }
 
@@ -249,11 +238,9 @@ static dea_status list_result(dea_result *result)
 
 // Handles ----------------------------------------------------------------------------------------
 
-void dea_result_free(dea_result *result)
+/* Frees what a handle owns. */
+static void clear(struct dea_result_handle *result)
 {
-  if (result == NULL) {
-    return;
-  }
   struct dea_context *ctx = result->ctx->inner;
   for (size_t i = 0; i < result->mesh_count; i++) {
     api_mesh_free(ctx, result->meshes[i]);
@@ -269,34 +256,40 @@ void dea_result_free(dea_result *result)
   }
   dea_device_destroy(ctx, result->device);
   dea_design_destroy(ctx, result->design);
-  dea_free(ctx, result);
 }
 
-/* A handle for what was computed; takes design, device and inner (or run), also on failure. */
-static dea_status create_result(dea_context *ctx, struct dea_result_handle contents,
-                                dea_result **out)
+void dea_result_free(dea_result *result)
+{
+  if (result != NULL) {
+    struct dea_context *ctx = result->ctx->inner;
+    clear(result);
+    dea_free(ctx, result);
+  }
+}
+
+/* Of what is to be computed or was read. */
+static struct dea_result_handle empty_handle(dea_context *ctx)
 {
   struct dea_context *inner = ctx->inner;
+  return (struct dea_result_handle){.ctx = ctx,
+                                    .memory = {.ctx = inner},
+                                    .texts.memory = {.ctx = inner},
+                                    .summary = {.ctx = inner},
+                                    .svg = {.ctx = inner}};
+}
+
+/* A handle for what was computed; takes the contents, also on failure. */
+static dea_status create_result(struct dea_result_handle contents, dea_result **out)
+{
+  struct dea_context *inner = contents.ctx->inner;
   dea_result *result = dea_alloc(inner, 1, sizeof *result);
   *out = NULL;
-  contents.ctx = ctx;
-  contents.summary.ctx = contents.svg.ctx = contents.memory.ctx = contents.texts.memory.ctx = inner;
   if (result == NULL) {
-    if (contents.run != NULL) {
-      dea_run_destroy(inner, contents.run);
-    } else {
-      dea_result_destroy(inner, contents.inner);
-    }
-    dea_device_destroy(inner, contents.device);
-    dea_design_destroy(inner, contents.design);
+    clear(&contents);
     return DEA_E_MEMORY;
   }
   *result = contents;
-  dea_status status = list_result(result);
-  if (status != DEA_OK) {
-    dea_result_free(result);
-    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(inner, list_result(result), dea_result_free(result));
   *out = result;
   return DEA_OK;
 }
@@ -327,7 +320,7 @@ dea_status dea_result_array(dea_context *ctx, const dea_result *result, const ch
   for (size_t i = 0; i < result->array_count; i++) {
     known[i] = result->arrays[i]->name;
   }
-  dea_status status = api_unknown(ctx, "array", name, known, result->array_count);
+  dea_status status = dea_unknown_name(ctx->inner, "array", name, known, result->array_count);
   dea_free(ctx->inner, known);
   return status;
 }
@@ -357,7 +350,7 @@ dea_status dea_result_text(dea_context *ctx, dea_result *result, const char *nam
       return DEA_OK;
     }
   }
-  return api_unknown(ctx, "text", name, NULL, 0);
+  return dea_unknown_name(ctx->inner, "text", name, NULL, 0);
 }
 
 // Figures and files ------------------------------------------------------------------------------
@@ -493,7 +486,7 @@ dea_status dea_result_svg(dea_context *ctx, dea_result *result, const char *figu
     }
   }
   if (!found) {
-    return api_unknown(ctx, "figure", figure, known, count);
+    return dea_unknown_name(ctx->inner, "figure", figure, known, count);
   }
   if (result->svg.length == 0) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the result has nothing to show in figure '%.60s'",
@@ -544,16 +537,12 @@ static dea_status read_design(struct dea_context *ctx, struct dea_result_handle 
 dea_status dea_result_open(dea_context *ctx, const char *path, dea_result **out)
 {
   struct dea_context *inner = api_begin(ctx);
-  struct dea_result_handle contents = {.ctx = ctx};
+  struct dea_result_handle contents = empty_handle(ctx);
   *out = NULL;
   DEA_TRY(inner, dea_run_read(inner, path, &contents.run));
   contents.inner = contents.run->result;
-  dea_status status = read_design(inner, &contents);
-  if (status != DEA_OK) {
-    dea_run_destroy(inner, contents.run);
-    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
-  }
-  return DEA_CHAIN(inner, create_result(ctx, contents, out));
+  DEA_TRY_ELSE(inner, read_design(inner, &contents), clear(&contents));
+  return DEA_CHAIN(inner, create_result(contents, out));
 }
 
 dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_design **out)
@@ -626,7 +615,7 @@ dea_status dea_run(dea_context *ctx, const dea_design *design, const dea_run_opt
                    dea_result **out)
 {
   struct dea_context *inner = api_begin(ctx);
-  struct dea_result_handle contents = {.ctx = ctx};
+  struct dea_result_handle contents = empty_handle(ctx);
   const dea_run_options all = run_options_of(options);
   struct dea_job job = {.studies = all.study_count > 0 ? all.studies : NULL,
                         .study_count = all.study_count,
@@ -642,11 +631,9 @@ dea_status dea_run(dea_context *ctx, const dea_design *design, const dea_run_opt
   status = status == DEA_OK ? compute(ctx, &job, contents.inner, &began) : status;
   ctx->running = false;
   if (!began) {
-    dea_result_destroy(inner, contents.inner);
-    dea_device_destroy(inner, contents.device);
-    dea_design_destroy(inner, contents.design);
+    clear(&contents);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
   }
-  dea_status made = create_result(ctx, contents, out);
+  dea_status made = create_result(contents, out);
   return made != DEA_OK ? made : status;
 }

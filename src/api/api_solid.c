@@ -14,8 +14,7 @@ struct dea_solid_handle {
   dea_context *ctx; // that made it; lent
   const struct dea_own_mesh *engine;
   struct dea_solid_object *object;
-  dea_array shown; // what dea_solid_array lends
-  char name[32];
+  dea_array shown;       // what dea_solid_array lends
   struct api_mesh *mesh; // what dea_solid_mesh lends
 };
 
@@ -58,7 +57,7 @@ static dea_status find_law(dea_context *ctx, const char *name, const struct dea_
     for (size_t i = 0; i < count && i < sizeof known / sizeof known[0]; i++) {
       known[i] = all[i]->name;
     }
-    return api_unknown(ctx, "law", name, known, count);
+    return dea_unknown_name(ctx->inner, "law", name, known, count);
   }
   return DEA_OK;
 }
@@ -164,14 +163,12 @@ static dea_status read_options(dea_context *ctx, dea_solid_options *o, dea_part 
   DEA_TRY(ctx->inner, read_mesh(ctx, o));
   for (size_t i = 0; i < o->part_count; i++) {
     parts[i] = (dea_part)DEA_PART_INIT;
-    memcpy(&parts[i], o->parts[i],
-           o->parts[i]->size < sizeof *parts ? o->parts[i]->size : sizeof *parts);
+    DOOR_COPY(parts[i], o->parts[i]);
     DEA_TRY(ctx->inner, read_part(ctx, i, &parts[i]));
   }
   for (size_t i = 0; i < o->body_count; i++) {
     bodies[i] = (dea_body)DEA_BODY_INIT;
-    memcpy(&bodies[i], o->bodies[i],
-           o->bodies[i]->size < sizeof *bodies ? o->bodies[i]->size : sizeof *bodies);
+    DOOR_COPY(bodies[i], o->bodies[i]);
     DOOR_CHECK(ctx, {"low_m", bodies[i].low_m, 3, true}, {"high_m", bodies[i].high_m, 3, true},
                {"centre_m", bodies[i].centre_m, 3, false});
   }
@@ -184,7 +181,7 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
   dea_solid_options all = DEA_SOLID_OPTIONS_INIT;
   const void *engine = NULL;
   *out = NULL;
-  memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
+  DOOR_COPY(all, options);
   if (all.part_count == 0 || all.parts == NULL) {
     return dea_fail(inner, DEA_E_ARGUMENT, "a solid needs a part: what it is made of");
   }
@@ -201,10 +198,7 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
   }
   dea_free(inner, bodies);
   dea_free(inner, parts);
-  if (status != DEA_OK) {
-    dea_free(inner, solid);
-    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(inner, status, dea_free(inner, solid));
   *out = solid;
   return DEA_OK;
 }
@@ -270,7 +264,7 @@ dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
 dea_status dea_solid_add_spring(dea_context *ctx, dea_solid *solid, const dea_body_spring *spring)
 {
   dea_body_spring all = DEA_BODY_SPRING_INIT;
-  memcpy(&all, spring, spring->size < sizeof all ? spring->size : sizeof all);
+  DOOR_COPY(all, spring);
   BEGIN(ctx, solid, {"place", &all.place, 1, false}, {"stiffness", &all.stiffness, 1, false},
         {"at", all.at, all.count, false}, {"force", all.force, all.count, false});
   return IN_TURN(solid, add_spring, solid->object, &all);
@@ -344,27 +338,9 @@ dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid)
 dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
                            const dea_array **out)
 {
-  static const char *const known[] = {"points_m",         "displacement_m",  "reaction_N",
-                                      "force_N",          "mode_Hz",         "mode_shape",
-                                      "channel_V",        "charge_C",        "capacitance_held_F",
-                                      "capacitance_F",    "body_shift_m",    "body_turn_rad",
-                                      "body_force_N",     "body_moment_N_m", "spring_force_N",
-                                      "spring_moment_N_m"};
-  const char *unit = "";
-  size_t shape[3] = {0, 0, 0};
   *out = NULL;
-  dea_solid_enter();
-  const double *data = solid->engine->array(solid->object, name, &unit, shape);
-  dea_solid_leave(DEA_OK);
-  if (data == NULL) {
-    return api_unknown(ctx, "array", name, known, sizeof known / sizeof known[0]);
-  }
-  snprintf(solid->name, sizeof solid->name, "%s", name);
-  solid->shown = (dea_array){.name = solid->name, .unit = unit, .meaning = "", .data = data};
-  for (int i = 0; i < 3; i++) {
-    solid->shown.rank += shape[i] > 0;
-    solid->shown.shape[i] = shape[i] > 0 ? shape[i] : 1;
-  }
+  DEA_TRY(ctx->inner,
+          DEA_SOLID_IN_TURN(solid->engine->array(ctx->inner, solid->object, name, &solid->shown)));
   *out = &solid->shown;
   return DEA_OK;
 }
@@ -377,7 +353,7 @@ dea_status dea_solid_mesh(dea_context *ctx, dea_solid *solid, const dea_mesh **o
   DEA_TRY(ctx->inner, begin(ctx, solid));
   api_mesh_free(ctx->inner, solid->mesh);
   solid->mesh = NULL;
-  (void)solid->engine->number(solid->object, "voltage_V", &voltage_V);
+  DEA_TRY(ctx->inner, solid->engine->number(ctx->inner, solid->object, "voltage_V", &voltage_V));
   DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->engine->mesh(ctx->inner, solid->object, &mesh)));
   DEA_TRY(ctx->inner, api_mesh_create(ctx->inner, "solid", voltage_V, mesh, true, &solid->mesh));
   *out = &solid->mesh->shown;
@@ -386,10 +362,6 @@ dea_status dea_solid_mesh(dea_context *ctx, dea_solid *solid, const dea_mesh **o
 
 dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char *name, double *out)
 {
-  static const char *const known[] = {"voltage_V",  "energy_J", "unstable_modes",
-                                      "iterations", "load",     "arc"};
   *out = NAN;
-  return solid->engine->number(solid->object, name, out)
-             ? DEA_OK
-             : api_unknown(ctx, "number", name, known, sizeof known / sizeof known[0]);
+  return solid->engine->number(ctx->inner, solid->object, name, out);
 }

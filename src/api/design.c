@@ -97,10 +97,7 @@ static dea_status build(dea_context *owner, const char *name, const char *bytes,
     status = read_with(ctx, design, &design->settings, &inner);
   }
   status = status == DEA_OK ? read_inner(ctx, design, inner) : status;
-  if (status != DEA_OK) {
-    dea_design_free(design);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_design_free(design));
   *out = design;
   return DEA_OK;
 }
@@ -181,10 +178,7 @@ dea_status dea_design_set_all(dea_context *ctx, dea_design *design, const char *
   dea_status status = dea_arena_status(&settings.memory);
   status = status == DEA_OK ? read_with(inner_ctx, design, &settings, &inner) : status;
   status = status == DEA_OK ? read_inner(inner_ctx, design, inner) : status;
-  if (status != DEA_OK) {
-    dea_arena_free(&settings.memory);
-    return dea_fail_chain(inner_ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(inner_ctx, status, dea_arena_free(&settings.memory));
   dea_arena_free(&design->settings.memory);
   design->settings = settings;
   return DEA_OK;
@@ -216,7 +210,7 @@ dea_status dea_design_get(dea_context *ctx, const dea_design *design, const char
   for (size_t i = 0; i < count; i++) {
     known[i] = design->values[i].key;
   }
-  dea_status status = api_unknown(ctx, "value", key, known, count);
+  dea_status status = dea_unknown_name(ctx->inner, "value", key, known, count);
   dea_free(ctx->inner, known);
   return status;
 }

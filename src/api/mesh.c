@@ -81,7 +81,7 @@ dea_status dea_result_mesh(dea_context *ctx, dea_result *result, const char *nam
     mesh = strcmp(result->meshes[i]->name, name) == 0 ? result->meshes[i] : mesh;
   }
   if (mesh == NULL) {
-    return api_unknown(ctx, "mesh", name, NULL, 0);
+    return dea_unknown_name(ctx->inner, "mesh", name, NULL, 0);
   }
   if (whole != 0 && mesh->inner->fold > 0) {
     if (mesh->whole == NULL) {

@@ -45,11 +45,11 @@ struct dea_own_mesh {
   dea_status (*path)(struct dea_context *ctx, struct dea_solid_object *object, double voltage_V,
                      double step, double unit_m);
   dea_status (*step)(struct dea_context *ctx, struct dea_solid_object *object);
-  /* An array by its name: its unit, its shape (0 beyond its rank); NULL when there is none. */
-  const double *(*array)(struct dea_solid_object *object, const char *name, const char **unit,
-                         size_t shape[3]);
+  dea_status (*array)(struct dea_context *ctx, struct dea_solid_object *object, const char *name,
+                      dea_array *out);
   /* *out: owned by the caller, NULL on failure. */
   dea_status (*mesh)(struct dea_context *ctx, const struct dea_solid_object *object,
                      struct dea_field_mesh **out);
-  bool (*number)(const struct dea_solid_object *object, const char *name, double *out);
+  dea_status (*number)(struct dea_context *ctx, const struct dea_solid_object *object,
+                       const char *name, double *out);
 };

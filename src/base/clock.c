@@ -23,3 +23,14 @@ void dea_clock_wait(double seconds)
     nanosleep(&wait, NULL);
   }
 }
+
+const char *dea_clock_stamp(char out[DEA_STAMP_SIZE])
+{
+  time_t now = time(NULL);
+  struct tm utc;
+  if (gmtime_r(&now, &utc) == NULL ||
+      strftime(out, DEA_STAMP_SIZE, "%Y-%m-%dT%H:%M:%SZ", &utc) == 0) {
+    out[0] = '\0';
+  }
+  return out;
+}

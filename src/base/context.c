@@ -1,3 +1,4 @@
+#define _POSIX_C_SOURCE 200809L // strnlen
 #include "base/context.h"
 
 #include <stdarg.h>
@@ -144,10 +145,7 @@ dea_status dea_array_grow(struct dea_context *ctx, void *array, size_t count, si
 
 char *dea_copy_text(struct dea_context *ctx, const char *text, size_t length)
 {
-  size_t n = 0;
-  while (n < length && text[n] != '\0') {
-    n++;
-  }
+  const size_t n = strnlen(text, length);
   char *copy = dea_resize(ctx, NULL, n + 1, 1);
   if (copy != NULL) {
     memcpy(copy, text, n);

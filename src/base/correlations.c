@@ -5,8 +5,8 @@
 
 static const double little = 1e-6; // of 1: what rounding to a few digits makes of a singular matrix
 
-/* L of the matrix, false where there is none. A pivot of 0 has a column of 0. */
-static bool factor(const struct dea_quantity *listed, size_t count, size_t n, double *L)
+// a pivot of 0 has a column of 0
+bool dea_correlations_factor(const struct dea_quantity *listed, size_t count, size_t n, double *L)
 {
   bool good = true;
   memset(L, 0, n * n * sizeof *L);
@@ -40,14 +40,9 @@ dea_status dea_correlations_check(struct dea_context *ctx, const struct dea_quan
     return dea_finding_add(ctx, DEA_ERROR, listed[0].location,
                            "%zu correlations where %zu %ss have %zu", count, n, what, wanted);
   }
-  return n > DEA_CORRELATED_MAX || factor(listed, count, n, L)
+  return n > DEA_CORRELATED_MAX || dea_correlations_factor(listed, count, n, L)
              ? DEA_OK
              : dea_finding_add(ctx, DEA_ERROR, listed[0].location,
                                "no numbers have these correlations: their matrix has a negative "
                                "eigenvalue");
-}
-
-void dea_correlations_factor(const struct dea_quantity *listed, size_t count, size_t n, double *L)
-{
-  factor(listed, count, n, L);
 }

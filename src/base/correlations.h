@@ -13,5 +13,5 @@ enum { DEA_CORRELATED_MAX = 64 }; // numbers
 dea_status dea_correlations_check(struct dea_context *ctx, const struct dea_quantity *listed,
                                   size_t count, size_t n, const char *what);
 /* The factor L [n][n] of their matrix, lower, C = L L^T: L times independent normal numbers are
- * normal ones with these correlations. Unit matrix without any. listed: checked. */
-void dea_correlations_factor(const struct dea_quantity *listed, size_t count, size_t n, double *L);
+ * normal ones with these correlations. Unit matrix without any. false: no numbers have these. */
+bool dea_correlations_factor(const struct dea_quantity *listed, size_t count, size_t n, double *L);

@@ -1,6 +1,7 @@
 #define _DEFAULT_SOURCE // flock, gethostname, pread
 #include "base/folder_lock.h"
 
+#include "base/clock.h"
 #include "base/write_file.h"
 
 #include <errno.h>
@@ -9,12 +10,11 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 struct dea_folder_lock {
   int file;
-  char *path; // owned
+  char path[DEA_PATH_SIZE];
 };
 
 static dea_status is_taken(struct dea_context *ctx, const char *directory, int file)
@@ -39,15 +39,10 @@ static bool is_there(int file, const char *path)
 /* Who has it, for others; it holds without. */
 static void sign(int file)
 {
-  char text[200], host[80] = "", stamp[32] = "";
-  time_t now = time(NULL);
-  struct tm utc;
+  char text[200], host[80] = "", stamp[DEA_STAMP_SIZE];
   gethostname(host, sizeof host - 1);
-  if (gmtime_r(&now, &utc) != NULL) {
-    strftime(stamp, sizeof stamp, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  }
-  int length =
-      snprintf(text, sizeof text, "process %ld on %s since %s\n", (long)getpid(), host, stamp);
+  int length = snprintf(text, sizeof text, "process %ld on %s since %s\n", (long)getpid(), host,
+                        dea_clock_stamp(stamp));
   if (ftruncate(file, 0) == 0) {
     dea_write_all(file, text, (size_t)length);
   }
@@ -78,7 +73,6 @@ static void release(struct dea_context *ctx, struct dea_folder_lock *lock)
   if (lock->file >= 0) {
     close(lock->file);
   }
-  dea_free(ctx, lock->path);
   dea_free(ctx, lock);
 }
 
@@ -89,8 +83,8 @@ dea_status dea_folder_lock(struct dea_context *ctx, const char *directory,
   struct dea_folder_lock *lock = dea_alloc(ctx, 1, sizeof *lock);
   DEA_TRY_MEMORY(lock != NULL);
   lock->file = -1;
-  lock->path = dea_path_join(ctx, directory, DEA_FOLDER_LOCK_FILE);
-  dea_status status = lock->path != NULL ? acquire(ctx, directory, lock) : DEA_E_MEMORY;
+  dea_status status = dea_path_build(ctx, directory, DEA_FOLDER_LOCK_FILE, lock->path);
+  status = status == DEA_OK ? acquire(ctx, directory, lock) : status;
   if (status != DEA_OK) {
     release(ctx, lock);
     return status;

@@ -186,22 +186,25 @@ hid_t dea_h5_group_create(struct h5 *h, hid_t parent, const char *name)
   return checked(h, H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), cannot_write);
 }
 
-/* Says what is missing. */
-static void require(struct h5 *h, hid_t group, const char *name)
+/* Opens what is in a group; what is missing is said. */
+static hid_t open_member(struct h5 *h, hid_t group, const char *name,
+                         hid_t (*open)(hid_t, const char *, hid_t))
 {
   if (h->status == DEA_OK && H5Lexists(group, name, H5P_DEFAULT) == 0) {
     h->status = dea_fail(h->ctx, DEA_E_IO, "%s %s: '%s' is missing", h->not_it, h->path, name);
   }
+  return h->status == DEA_OK ? checked(h, open(group, name, H5P_DEFAULT), h->not_it)
+                             : H5I_INVALID_HID;
 }
 
 hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name)
 {
-  if (h->status != DEA_OK) {
-    return H5I_INVALID_HID;
-  }
-  require(h, parent, name);
-  return h->status == DEA_OK ? checked(h, H5Gopen2(parent, name, H5P_DEFAULT), h->not_it)
-                             : H5I_INVALID_HID;
+  return open_member(h, parent, name, H5Gopen2);
+}
+
+hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name)
+{
+  return open_member(h, group, name, H5Dopen2);
 }
 
 void dea_h5_close(hid_t object)
@@ -290,16 +293,6 @@ hsize_t dea_h5_file_size(const struct h5 *h, hid_t object)
   }
   dea_h5_close(file);
   return size;
-}
-
-hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name)
-{
-  if (h->status != DEA_OK) {
-    return H5I_INVALID_HID;
-  }
-  require(h, group, name);
-  return h->status == DEA_OK ? checked(h, H5Dopen2(group, name, H5P_DEFAULT), h->not_it)
-                             : H5I_INVALID_HID;
 }
 
 void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to)

@@ -8,7 +8,7 @@
 
 const char *const dea_no_yes[] = {"no", "yes", NULL};
 
-enum { MESSAGE_SIZE = 800, KEYS_MAX = 48 };
+enum { MESSAGE_SIZE = 800, KEYS_MAX = 48, EXAMPLE_SIZE = 300 };
 
 /* A section being read: node is NULL when it is absent and only defaults apply. */
 struct section {
@@ -89,6 +89,15 @@ static void write_keys(const struct dea_record *record, size_t most, char *out, 
   }
 }
 
+/* "; write for example 'EXAMPLE'", "" of a field without one. Returns out. */
+static const char *for_example(const struct dea_field *field, char out[EXAMPLE_SIZE])
+{
+  const bool any = field->example != NULL;
+  snprintf(out, EXAMPLE_SIZE, "%s%s%s", any ? "; write for example '" : "",
+           any ? field->example : "", any ? "'" : "");
+  return out;
+}
+
 /* false after an error: the node is not of the form that the field wants. */
 static dea_status check_form(const struct dea_reader *reader, const struct dea_field *field,
                              const struct dea_node *node, bool element, bool *good)
@@ -101,11 +110,10 @@ static dea_status check_form(const struct dea_reader *reader, const struct dea_f
   if (*good) {
     return DEA_OK;
   }
+  char example[EXAMPLE_SIZE];
+  for_example(field, example);
   if (node->kind == DEA_NODE_VALUE && node->empty) {
-    return dea_schema_error(reader, node->location, "%s has no value%s%s%s", field->key,
-                            field->example != NULL ? "; write for example '" : "",
-                            field->example != NULL ? field->example : "",
-                            field->example != NULL ? "'" : "");
+    return dea_schema_error(reader, node->location, "%s has no value%s", field->key, example);
   }
   static const char *const forms[] = {"a single value", "a list", "a section with keys of its own"};
   enum { SHOWN = 5 };
@@ -113,11 +121,9 @@ static dea_status check_form(const struct dea_reader *reader, const struct dea_f
   if (section && due == DEA_NODE_SECTION && field->record != NULL) {
     write_keys(field->record, SHOWN, keys, sizeof keys);
   }
-  return dea_schema_error(reader, node->location, "%s must be %s%s%s%s, not %s%s%s%s", field->key,
+  return dea_schema_error(reader, node->location, "%s must be %s%s%s%s, not %s%s", field->key,
                           forms[due], keys[0] != '\0' ? " (" : "", keys, keys[0] != '\0' ? ")" : "",
-                          forms[node->kind], field->example != NULL ? "; write for example '" : "",
-                          field->example != NULL ? field->example : "",
-                          field->example != NULL ? "'" : "");
+                          forms[node->kind], example);
 }
 
 /* A section with memory of its own; node NULL: its defaults. */
@@ -193,13 +199,20 @@ static dea_status read_list(const struct dea_reader *reader, const struct dea_fi
     return dea_schema_error(reader, node->location, "%s must have %s%zu items, not %zu", field->key,
                             due, field->list_max, node->child_count);
   }
+  char *elements = base + field->offset;
+  if (field->own_list) {
+    char *own = dea_alloc(reader->ctx, node->child_count, field->element_size);
+    DEA_TRY_MEMORY(own != NULL);
+    memcpy(elements, &own, sizeof own);
+    elements = own;
+  }
   *count = 0;
   for (const struct dea_node *item = node->child; item != NULL; item = item->next) {
     char item_path[DEA_PATH_SIZE];
     bool good;
     snprintf(item_path, sizeof item_path, "%s[%zu]", path, *count);
     DEA_TRY(reader->ctx, check_form(reader, field, item, true, &good));
-    char *target = base + field->offset + *count * field->element_size;
+    char *target = elements + *count * field->element_size;
     if (good) {
       DEA_TRY(reader->ctx, read_node(reader, field, item, item_path, origin, target));
     } else {
@@ -311,16 +324,12 @@ static dea_status missing_field(const struct dea_reader *reader, const struct se
   }
   snprintf(where, sizeof where, section->path[0] != '\0' ? "section '%.60s'" : "the file",
            section->path);
-  if (field->group > 0) {
-    return dea_schema_error(reader, section->location,
-                            "%s lacks its '%s' (%s), for example '%s: %s'", where, field->key,
-                            field->doc, field->key, field->example);
+  char example[EXAMPLE_SIZE] = "";
+  if (field->example != NULL) {
+    snprintf(example, sizeof example, ", for example '%s: %s'", field->key, field->example);
   }
-  return dea_schema_error(
-      reader, section->location, "%s lacks '%s' (%s)%s%s%s%s%s", where, field->key, field->doc,
-      field->example != NULL ? ", for example '" : "", field->example != NULL ? field->key : "",
-      field->example != NULL ? ": " : "", field->example != NULL ? field->example : "",
-      field->example != NULL ? "'" : "");
+  return dea_schema_error(reader, section->location, "%s lacks %s'%s' (%s)%s", where,
+                          field->group > 0 ? "its " : "", field->key, field->doc, example);
 }
 
 /* A field that is not given: its default, nothing, or an error. */
@@ -470,7 +479,8 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
                                : check_twice(reader, section, &record->fields[i], node));
       continue;
     }
-    const char *nearest = dea_nearest_name(node->key, keys, count);
+    char hint[DEA_HINT_SIZE];
+    dea_name_hint(node->key, keys, count, hint);
     const char *below = section_with(record, node->key);
     DEA_TRY(reader->ctx,
             below != NULL
@@ -478,11 +488,9 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
                                    "unknown key '%.60s' here; it belongs into a section such as "
                                    "'%s', indented",
                                    node->key, below)
-            : nearest != NULL
-                ? dea_schema_error(reader, node->key_place,
-                                   "unknown key '%.60s'; did you mean '%s'?", node->key, nearest)
-                : dea_schema_error(reader, node->key_place,
-                                   "unknown key '%.60s'; known here are: %s", node->key, list));
+                : dea_schema_error(
+                      reader, node->key_place, "unknown key '%.60s'%s%s", node->key,
+                      hint[0] != '\0' ? hint : "; known here are: ", hint[0] != '\0' ? "" : list));
   }
   return DEA_OK;
 }

@@ -18,7 +18,7 @@ enum dea_field_kind {
   DEA_FIELD_INPLANE,   // struct dea_inplane_length: "5 mm stretched" or "5 mm unstretched"
   DEA_FIELD_STRETCHED, // struct dea_quantity: the same, where only the stretched film makes sense
   DEA_FIELD_CHOICE,    // struct dea_choice: one of `choices`, value is its index
-  DEA_FIELD_ROWS,      // const struct dea_node *: a list of lists of numbers, for dea_schema_rows
+  DEA_FIELD_ROWS,      // const struct dea_node *: a list of lists of numbers, for its reader
   DEA_FIELD_RECORD,    // a section; its fields' offsets count from this record's offset
   DEA_FIELD_SECTION,   // const struct dea_node *: a section whose keys another table knows
   DEA_FIELD_SETTINGS,  // void *: a section read into zeroed memory of its own, of element_size
@@ -55,6 +55,7 @@ struct dea_field {
   /* A list: `list_max` > 0 elements of `element_size` bytes at offset; their number (size_t) at
    * count_offset. */
   size_t list_min, list_max, element_size, count_offset;
+  bool own_list;   // at offset is a pointer to the elements, which are owned by the struct
   bool lone;       // a single value stands for a list of one
   bool one_line;   // of a label that is shown: line ends in it become blanks
   bool or_section; // of a label: a section may stand for it, which was replaced before the reading
@@ -98,16 +99,20 @@ extern const char *const dea_no_yes[];
   {                                                                                                \
     .key = name, .kind = DEA_FIELD_##its_kind, .offset = at, __VA_ARGS__                           \
   }
-/* Of such a row: it is a list. */
+/* Of such a row: the table of a section within the file. */
+#define DEA_ROWS(rows)                                                                             \
+  (&(const struct dea_record){.fields = (rows), .field_count = sizeof(rows) / sizeof(rows)[0]})
+/* Of such a row: it is a list, in the struct or in memory of its own. */
 #define DEA_LIST(least, most, type, count)                                                         \
   .list_min = least, .list_max = most, .element_size = sizeof(type), .count_offset = count
+#define DEA_OWN_LIST(least, most, type, count) DEA_LIST(least, most, type, count), .own_list = true
 
 /* Whether the keys of a section are those of the field's record. */
 bool dea_field_has_record(const struct dea_field *field);
 
 struct dea_record {
-  const char *name; // "film"; for messages
-  const char *doc;
+  const char *name; // of a file, for messages, or of a kind of section; NULL of other sections
+  const char *doc;  // the same
   const struct dea_field *fields;
   size_t field_count;
 };
@@ -116,6 +121,8 @@ struct dea_record {
  * offset: of its member from the record's base; NULL: not wanted. */
 const struct dea_field *dea_record_find(const struct dea_record *record, const char *key,
                                         size_t *offset);
+/* Whether its numbers have a least and a largest value. */
+void dea_field_limits(const struct dea_field *field, bool *lower, bool *upper);
 /* Whether its values can change little by little. */
 bool dea_field_varies(const struct dea_field *field);
 
@@ -132,13 +139,6 @@ struct dea_reader {
  * caller goes on only when the number of errors has not grown. */
 dea_status dea_schema_read(const struct dea_reader *reader, const struct dea_record *record,
                            const struct dea_node *node, const char *path, void *base);
-
-/* Numbers of a node of a DEA_FIELD_ROWS: rows[*count][columns] in SI, each column with what is due,
- * at least `least` rows; owned by the caller (dea_free). key: of the node, for messages. Errors are
- * findings, *rows is then NULL and the status DEA_OK, as in dea_schema_read. */
-dea_status dea_schema_rows(const struct dea_reader *reader, const struct dea_node *node,
-                           const char *key, const struct dea_measure *due, size_t columns,
-                           size_t least, double **rows, size_t *count);
 
 /* Adds a value to the reader's list. text: lent for as long as the list. */
 dea_status dea_schema_list(const struct dea_reader *reader, const char *path, const char *text,

@@ -87,17 +87,12 @@ static dea_status define_unit(struct maker *maker, const char *unit, const char 
   return pattern.failed ? DEA_E_MEMORY : DEA_OK;
 }
 
-/* Whether a field has a largest value. */
-static bool has_upper(const struct dea_field *field)
-{
-  return field->max > field->min || (field->max == field->min && field->max != 0);
-}
-
 /* Pattern of what a limit at 0 says of a number's first signs, "" for nothing: 0 degC is above. */
 static const char *sign_pattern(const struct dea_field *field)
 {
-  bool limited = field->min != 0 || field->max != 0 || field->above_min;
-  if (!limited || field->min < 0 || (field->unit != NULL && strcmp(field->unit, "K") == 0)) {
+  bool lower, upper;
+  dea_field_limits(field, &lower, &upper);
+  if (!lower || field->min < 0 || (field->unit != NULL && strcmp(field->unit, "K") == 0)) {
     return "";
   }
   return field->min > 0 || field->above_min ? "^\\+?(?=[0-9.]*[1-9])[0-9.]" : "^\\+?[0-9.]";
@@ -124,23 +119,14 @@ static json_t *measured_json(struct maker *maker, const struct dea_field *field)
   return json_pack("{s:o}", "allOf", all);
 }
 
-/* The unit of an example such as "50 %" or "[0.5 %, 1 %]", "" for a bare number. */
-static void example_unit(const struct dea_field *field, char out[NAME_SIZE])
-{
-  const char *end = "";
-  if (field->example != NULL) {
-    dea_text_to_double(field->example + strspn(field->example, "["), &end);
-  }
-  end += strspn(end, " ");
-  snprintf(out, NAME_SIZE, "%.*s", (int)strcspn(end, ",]"), end);
-}
-
 static json_t *bare_json(const struct dea_field *field)
 {
   json_t *json =
       json_pack("{s:s}", "type", field->kind == DEA_FIELD_INTEGER ? "integer" : "number");
-  bool upper = has_upper(field);
-  if (json != NULL && (field->min != 0 || upper || field->above_min) && isfinite(field->min)) {
+  bool lower, upper;
+  dea_field_limits(field, &lower, &upper);
+  if (json != NULL && lower && (field->min != 0 || upper || field->above_min) &&
+      isfinite(field->min)) {
     json_object_set_new(json, field->above_min ? "exclusiveMinimum" : "minimum",
                         json_real(field->min));
   }
@@ -157,8 +143,10 @@ static json_t *number_json(struct maker *maker, const struct dea_field *field)
   if (strcmp(field->unit, "1") != 0) {
     return measured_json(maker, field);
   }
+  size_t length = 0;
+  const char *example = field->example != NULL ? dea_units_shown(field->example, &length) : "";
   char unit[NAME_SIZE];
-  example_unit(field, unit);
+  snprintf(unit, sizeof unit, "%.*s", (int)length, example);
   if (*unit == '\0') {
     return bare_json(field);
   }

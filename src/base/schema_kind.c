@@ -1,7 +1,6 @@
 /* Sections whose keys depend on the kind that they name. */
 #include "base/schema_value.h"
 
-#include <stdio.h>
 #include <string.h>
 
 dea_status dea_schema_kind(const struct dea_reader *reader, const struct dea_node *node,
@@ -9,16 +8,11 @@ dea_status dea_schema_kind(const struct dea_reader *reader, const struct dea_nod
 {
   const struct dea_node *kind = dea_node_find(node, "kind");
   const char *noun = strchr(what, ' ');
-  char list[256] = "";
-  size_t used = 0;
+  char list[DEA_HINT_SIZE];
   noun = noun != NULL ? noun + 1 : what;
   for (*index = 0; *index < count; ++*index) {
     if (kind != NULL && strcmp(kind->text, names[*index]) == 0) {
       return DEA_OK;
-    }
-    if (used < sizeof list) {
-      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", *index > 0 ? ", " : "",
-                               names[*index]);
     }
   }
   if (kind == NULL || kind->kind != DEA_NODE_VALUE || kind->empty) {
@@ -26,11 +20,9 @@ dea_status dea_schema_kind(const struct dea_reader *reader, const struct dea_nod
                             kind != NULL        ? kind->location
                             : node->key != NULL ? node->key_place
                                                 : node->location,
-                            "%s needs its kind: %s", what, list);
+                            "%s needs its kind: %s", what, dea_names_list(names, count, list));
   }
-  const char *nearest = dea_nearest_name(kind->text, names, count);
-  return dea_schema_error(reader, kind->location, "there is no %s '%.60s'%s%s%s: %s", noun,
-                          kind->text, nearest != NULL ? "; did you mean '" : "",
-                          nearest != NULL ? nearest : "",
-                          nearest != NULL ? "'? All are" : "; there are", list);
+  dea_name_hint_list(kind->text, names, count, " All are: ", "; there are: ", list);
+  return dea_schema_error(reader, kind->location, "there is no %s '%.60s'%s", noun, kind->text,
+                          list);
 }

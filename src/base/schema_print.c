@@ -48,12 +48,12 @@ static void add_form(struct dea_text *out, const struct dea_field *field)
   if (field->kind == DEA_FIELD_INPLANE) {
     dea_text_add(out, ", stretched or unstretched");
   }
-  bool limited = is_number(field) && (field->min != 0 || field->max != 0 || field->above_min);
-  if (limited) {
+  bool lower, upper;
+  dea_field_limits(field, &lower, &upper);
+  if (is_number(field) && lower) {
     dea_text_add(out, ", %s %g", field->above_min ? ">" : ">=", field->min);
   }
-  bool upper = field->max > field->min || (field->max == field->min && field->max != 0);
-  if (limited && upper) {
+  if (is_number(field) && upper) {
     dea_text_add(out, ", %s %g", field->below_max ? "<" : "<=", field->max);
   }
 }

@@ -72,13 +72,15 @@ void dea_schema_value_absent(const struct dea_field *field, char *target,
   case DEA_FIELD_CHOICE:
     *(struct dea_choice *)target = (struct dea_choice){-1, DEA_ABSENT, location};
     break;
-  case DEA_FIELD_TEXT:
-  case DEA_FIELD_ROWS:
-  case DEA_FIELD_RECORD:
-  case DEA_FIELD_SECTION:
-  case DEA_FIELD_SETTINGS:
+  default:
     break; // zeroed memory says it
   }
+}
+
+void dea_field_limits(const struct dea_field *field, bool *lower, bool *upper)
+{
+  *lower = field->min != 0 || field->max != 0 || field->above_min;
+  *upper = *lower && (field->max > field->min || (field->max == field->min && field->max != 0));
 }
 
 /* A limit in the unit that the number was written in, "at most 10 mm" of '100 mm'. */
@@ -105,12 +107,10 @@ static dea_status check_range(const struct dea_reader *reader, const struct dea_
   const struct dea_field *field = value->field;
   char limit[48];
   *good = true;
-  if (field->min == 0 && field->max == 0 && !field->above_min) {
-    return DEA_OK;
-  }
-  bool low = field->above_min ? si <= field->min : si < field->min;
-  bool limited = field->max > field->min || (field->max == field->min && field->max != 0);
-  bool high = limited && (field->below_max ? si >= field->max : si > field->max);
+  bool lower, upper;
+  dea_field_limits(field, &lower, &upper);
+  bool low = lower && (field->above_min ? si <= field->min : si < field->min);
+  bool high = upper && (field->below_max ? si >= field->max : si > field->max);
   if (!low && !high) {
     return DEA_OK;
   }
@@ -189,11 +189,10 @@ static dea_status read_inplane(const struct dea_reader *reader,
     out->state = (enum dea_film_state)state;
     return read_number(reader, value, number, &out->length);
   }
-  const char *nearest = strlen(word) > 4 ? dea_nearest_name(word, film_states, 2) : NULL;
-  if (nearest != NULL) {
-    return dea_schema_error(reader, value->location,
-                            "%s: '%.60s' is not a film state; did you mean '%s'?",
-                            value->field->key, word, nearest);
+  char hint[DEA_HINT_SIZE];
+  if (strlen(word) > 4 && dea_name_hint(word, film_states, 2, hint)[0] != '\0') {
+    return dea_schema_error(reader, value->location, "%s: '%.60s' is not a film state%s",
+                            value->field->key, word, hint);
   }
   if (!dea_units_read(reader->ctx, value->text, measure_of(value->field), &si, why)) {
     return why[0] == '\0'
@@ -237,24 +236,18 @@ static dea_status read_choice(const struct dea_reader *reader, const struct dea_
                               struct dea_choice *out)
 {
   const char *const *choices = value->field->choices;
-  char list[MESSAGE_SIZE / 2] = "";
-  size_t count = 0, used = 0;
+  char list[DEA_HINT_SIZE], hint[DEA_HINT_SIZE];
+  size_t count = 0;
   *out = (struct dea_choice){-1, value->origin, value->location};
   for (; choices[count] != NULL; count++) {
     if (strcmp(choices[count], value->text) == 0) {
       out->value = (int)count;
       return DEA_OK;
     }
-    if (used < sizeof list) {
-      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", count > 0 ? ", " : "",
-                               choices[count]);
-    }
   }
-  const char *nearest = dea_nearest_name(value->text, choices, count);
-  return dea_schema_error(reader, value->location, "%s: '%.60s' is none of: %s%s%s%s",
-                          value->field->key, value->text, list,
-                          nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                          nearest != NULL ? "'?" : "");
+  return dea_schema_error(reader, value->location, "%s: '%.60s' is none of: %s%s",
+                          value->field->key, value->text, dea_names_list(choices, count, list),
+                          dea_name_hint(value->text, choices, count, hint));
 }
 
 static dea_status read_label(const struct dea_reader *reader, const struct dea_schema_value *value,
@@ -298,10 +291,7 @@ dea_status dea_schema_value_read(const struct dea_reader *reader,
   case DEA_FIELD_CHOICE:
     DEA_TRY(reader->ctx, read_choice(reader, value, (struct dea_choice *)target));
     break;
-  case DEA_FIELD_ROWS:
-  case DEA_FIELD_RECORD:
-  case DEA_FIELD_SECTION:
-  case DEA_FIELD_SETTINGS:
+  default:
     return DEA_OK; // read_field has done these
   }
   // The list holds what was written, so a diameter stays one although the struct keeps the radius.

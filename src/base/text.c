@@ -46,6 +46,17 @@ void dea_text_add(struct dea_text *text, const char *format, ...)
   va_end(again);
 }
 
+void dea_text_add_bytes(struct dea_text *text, const void *bytes, size_t length)
+{
+  if (text_reserve(text, length)) {
+    if (length > 0) {
+      memcpy(text->data + text->length, bytes, length);
+    }
+    text->length += length;
+    text->data[text->length] = '\0';
+  }
+}
+
 const char *dea_text_get(const struct dea_text *text)
 {
   return text->data != NULL ? text->data : "";
@@ -106,20 +117,9 @@ void dea_text_flatten(char *text)
 
 const char *dea_entity_name(unsigned code)
 {
-  switch (code) {
-  case '<':
-    return "&lt;";
-  case '>':
-    return "&gt;";
-  case '&':
-    return "&amp;";
-  case '"':
-    return "&quot;";
-  case '\'':
-    return "&#39;";
-  default:
-    return NULL;
-  }
+  static const char *const names[] = {
+      ['<'] = "&lt;", ['>'] = "&gt;", ['&'] = "&amp;", ['"'] = "&quot;", ['\''] = "&#39;"};
+  return code < sizeof names / sizeof names[0] ? names[code] : NULL;
 }
 
 enum { NAME_MAX_LENGTH = 63 };
@@ -179,6 +179,46 @@ const char *dea_nearest_name(const char *word, const char *const candidates[], s
     alike += begins ? 1 : 0;
   }
   return best > limit && alike != 1 ? NULL : nearest;
+}
+
+const char *dea_names_list(const char *const names[], size_t count, char out[DEA_HINT_SIZE])
+{
+  size_t used = 0;
+  out[0] = '\0';
+  for (size_t i = 0; i < count && used < DEA_HINT_SIZE; i++) {
+    used += (size_t)snprintf(out + used, DEA_HINT_SIZE - used, "%s%s", i > 0 ? ", " : "", names[i]);
+  }
+  return out;
+}
+
+const char *dea_name_hint(const char *word, const char *const names[], size_t count,
+                          char out[DEA_HINT_SIZE])
+{
+  const char *nearest = dea_nearest_name(word, names, count);
+  snprintf(out, DEA_HINT_SIZE, "%s%s%s", nearest != NULL ? "; did you mean '" : "",
+           nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+  return out;
+}
+
+const char *dea_name_hint_list(const char *word, const char *const names[], size_t count,
+                               const char *near, const char *far, char out[DEA_HINT_SIZE])
+{
+  char list[DEA_HINT_SIZE];
+  const size_t used = strlen(dea_name_hint(word, names, count, out));
+  const char *before = used > 0 ? near : far;
+  if (before != NULL) {
+    snprintf(out + used, DEA_HINT_SIZE - used, "%s%s", before,
+             count > 0 ? dea_names_list(names, count, list) : "none");
+  }
+  return out;
+}
+
+dea_status dea_unknown_name(struct dea_context *ctx, const char *what, const char *name,
+                            const char *const known[], size_t count)
+{
+  char hint[DEA_HINT_SIZE];
+  return dea_fail(ctx, DEA_E_ARGUMENT, "there is no %s '%.100s'%s", what, name,
+                  dea_name_hint(name, known, count, hint));
 }
 
 double dea_text_to_double(const char *text, const char **end)

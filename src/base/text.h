@@ -1,4 +1,4 @@
-/* A growing text, and small things on text. */
+/* A growing text or growing bytes, and small things on text. */
 #pragma once
 
 #include "base/context.h"
@@ -13,6 +13,8 @@ struct dea_text {
 };
 
 void dea_text_add(struct dea_text *text, const char *format, ...) DEA_PRINTF(2, 3);
+/* The same of any bytes, zeros too; a text's end stays behind them. */
+void dea_text_add_bytes(struct dea_text *text, const void *bytes, size_t length);
 /* The text so far, "" if nothing was added; lent until the next change. */
 const char *dea_text_get(const struct dea_text *text);
 void dea_text_free(struct dea_text *text);
@@ -36,6 +38,21 @@ const char *dea_entity_name(unsigned code);
  * be what was meant (distance above a third of the word's length, at least 1), nor the only one
  * that begins with the word or that the word begins with (of three characters or more). */
 const char *dea_nearest_name(const char *word, const char *const candidates[], size_t count);
+/* "a, b, c", as much of it as there is room for. Returns out. */
+enum { DEA_HINT_SIZE = 1024 };
+const char *dea_names_list(const char *const names[], size_t count, char out[DEA_HINT_SIZE]);
+/* What a message says behind a word that is none of `names`: "; did you mean 'b'?", "" where none
+ * is near. Returns out. */
+const char *dea_name_hint(const char *word, const char *const names[], size_t count,
+                          char out[DEA_HINT_SIZE]);
+/* The same with their list, "none" of an empty one: "; did you mean 'b'?" with `near` and the list
+ * behind it (NULL: without), or `far` and the list where none is near: " All laws: ", "; there are:
+ * ". */
+const char *dea_name_hint_list(const char *word, const char *const names[], size_t count,
+                               const char *near, const char *far, char out[DEA_HINT_SIZE]);
+/* DEA_E_ARGUMENT with "there is no WHAT 'NAME'" and dea_name_hint. */
+dea_status dea_unknown_name(struct dea_context *ctx, const char *what, const char *name,
+                            const char *const known[], size_t count);
 
 bool dea_text_ends_with(const char *text, const char *end);
 

@@ -141,11 +141,10 @@ static bool is_plain_unit(const char *text)
          strstr(text, "from") == NULL && strstr(text, "after") == NULL;
 }
 
-/* Unit of an example such as "100 um" or "[0 kV, 1 kV]", *length bytes; none of a bare number. */
-static const char *example_unit(const struct dea_measure *due, size_t *length)
+const char *dea_units_shown(const char *example, size_t *length)
 {
   const char *end;
-  dea_text_to_double(due->example + strspn(due->example, "["), &end);
+  dea_text_to_double(example + strspn(example, "["), &end);
   end += strspn(end, " ");
   *length = strcspn(end, ",]");
   return end;
@@ -215,7 +214,7 @@ static bool convert(const ut_system *system, const char *text, const char *unit,
   ut_unit *from = ut_parse(system, unit, UT_UTF8), *to = ut_parse(system, due->unit, UT_UTF8);
   bool number_due = strcmp(due->unit, "1") == 0, percent = unit[0] == '%';
   size_t length;
-  const char *shown = example_unit(due, &length);
+  const char *shown = dea_units_shown(due->example, &length);
   bool as_shown = strlen(unit) == length && memcmp(unit, shown, length) == 0;
   bool known = from != NULL && to != NULL && ut_are_convertible(from, to) != 0 &&
                !(number_due && !as_shown) && !(strcmp(due->unit, "radian") == 0 && percent);
@@ -245,7 +244,7 @@ static void explain_bare(const char *text, double value, const struct dea_measur
   static const double least_V = 100; // below it a number may have been meant in kV
   static const double least = 1e-3;  // below it one in um or mm was meant in SI
   size_t length;
-  const char *unit = example_unit(due, &length);
+  const char *unit = dea_units_shown(due->example, &length);
   if (value != 0 && fabs(value) < least) {
     unit = due->unit;
     length = strlen(unit);

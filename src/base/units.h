@@ -15,6 +15,10 @@ struct dea_measure {
 
 enum { DEA_WHY_SIZE = 400 };
 
+/* Unit of an example such as "100 um" or "[0 kV, 1 kV]", *length bytes of it; none of a bare
+ * number. Lent. */
+const char *dea_units_shown(const char *example, size_t *length);
+
 /* Reads "100 um", "2.5 kV", "80 V/um" (or "0.2" where the unit due is "1"; "20 %" only where the
  * example is in percent too), numbers in the C locale. true: *si is finite and in SI. false: why
  * holds a clause that says what is wrong and what to write instead, or the context holds

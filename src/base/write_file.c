@@ -22,6 +22,16 @@ char *dea_path_join(struct dea_context *ctx, const char *directory, const char *
   return text.data;
 }
 
+dea_status dea_path_build(struct dea_context *ctx, const char *directory, const char *name,
+                          char out[DEA_PATH_SIZE])
+{
+  const size_t n = strlen(directory);
+  const int length = snprintf(out, DEA_PATH_SIZE, "%s%s%s", directory,
+                              n > 0 && directory[n - 1] != '/' ? "/" : "", name);
+  return length < DEA_PATH_SIZE ? DEA_OK
+                                : dea_fail(ctx, DEA_E_IO, "the path of '%.60s' is too long", name);
+}
+
 dea_status dea_folder_create_temporary(struct dea_context *ctx, const char *word,
                                        char folder[DEA_TEMPORARY_SIZE])
 {
@@ -71,39 +81,37 @@ bool dea_path_is_folder(const char *path)
 
 dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const char *name)
 {
-  char *path = dea_path_join(ctx, directory, name);
-  DEA_TRY_MEMORY(path != NULL);
-  bool there = dea_path_exists(path);
-  dea_free(ctx, path);
-  return !there ? DEA_OK
-                : dea_fail(ctx, DEA_E_IO,
-                           "%s/%s already exists; choose another folder, or replace "
-                           "what is there with --force",
-                           directory, name);
+  char path[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, directory, name, path));
+  return !dea_path_exists(path)
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_IO,
+                        "%s/%s already exists; choose another folder, or replace "
+                        "what is there with --force",
+                        directory, name);
 }
 
 dea_status dea_path_create_folders(struct dea_context *ctx, const char *directory, const char *name,
                                    bool force)
 {
-  char *path = dea_path_join(ctx, directory, name);
-  DEA_TRY_MEMORY(path != NULL);
-  bool there = dea_path_exists(path) && !dea_path_is_folder(path);
-  dea_status status = there && force ? dea_path_check_target(ctx, path) : DEA_OK;
-  if (there && force && status == DEA_OK) {
-    unlink(path);
+  char path[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, directory, name, path));
+  if (!dea_path_exists(path) || dea_path_is_folder(path)) {
+    return DEA_OK;
   }
-  dea_free(ctx, path);
-  return there && !force ? dea_path_refuse(ctx, directory, name) : status;
+  DEA_TRY(ctx, force ? dea_path_check_target(ctx, path) : dea_path_refuse(ctx, directory, name));
+  unlink(path);
+  return DEA_OK;
 }
 
 void dea_path_forget(struct dea_context *ctx, const char *directory, const char *name)
 {
   struct stat info;
-  char *path = dea_path_join(ctx, directory, name);
-  if (path != NULL && lstat(path, &info) == 0 && (S_ISREG(info.st_mode) || S_ISLNK(info.st_mode))) {
+  char path[DEA_PATH_SIZE];
+  if (dea_path_build(ctx, directory, name, path) == DEA_OK && lstat(path, &info) == 0 &&
+      (S_ISREG(info.st_mode) || S_ISLNK(info.st_mode))) {
     unlink(path);
   }
-  dea_free(ctx, path);
 }
 
 static dea_status folder_make_one(struct dea_context *ctx, const char *directory)
@@ -224,11 +232,9 @@ dea_status dea_file_write(struct dea_context *ctx, const char *path, const char 
 dea_status dea_file_write_into(struct dea_context *ctx, const char *directory, const char *name,
                                const char *bytes, size_t length)
 {
-  char *path = dea_path_join(ctx, directory, name);
-  DEA_TRY_MEMORY(path != NULL);
-  dea_status status = dea_file_write(ctx, path, bytes, length);
-  dea_free(ctx, path);
-  return status;
+  char path[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, directory, name, path));
+  return dea_file_write(ctx, path, bytes, length);
 }
 
 dea_status dea_text_write_path(struct dea_context *ctx, const struct dea_text *text,

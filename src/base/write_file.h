@@ -3,10 +3,13 @@
 
 #include "base/text.h"
 
-enum { DEA_TEMPORARY_SIZE = 1000 };
+enum { DEA_TEMPORARY_SIZE = 1000, DEA_PATH_SIZE = 4096 };
 
 /* "directory/name"; owned by the caller, NULL on failure. */
 char *dea_path_join(struct dea_context *ctx, const char *directory, const char *name);
+/* The same into out; DEA_E_IO for one that no file can have. */
+dea_status dea_path_build(struct dea_context *ctx, const char *directory, const char *name,
+                          char out[DEA_PATH_SIZE]);
 /* Makes a folder and those above it; fine when it is there. DEA_E_IO otherwise. */
 dea_status dea_folder_create(struct dea_context *ctx, const char *directory);
 /* A new name is in its folder, which has to reach the disk too: brings the folder that `path` lies

@@ -363,10 +363,7 @@ dea_status dea_yaml_parse(struct dea_context *ctx, const char *name, const char 
   if (yaml->name != NULL) {
     status = parse_into(ctx, yaml, bytes, length, NULL, &yaml->root);
   }
-  if (status != DEA_OK) {
-    dea_yaml_destroy(ctx, yaml);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_yaml_destroy(ctx, yaml));
   *out = yaml;
   return DEA_OK;
 }

@@ -67,18 +67,9 @@ static int parse_models(struct dea_cli *cli, const struct dea_command *command,
 /* Says of which quantities there are, or which of them is near. */
 static dea_status no_quantity(struct dea_context *ctx, const char *text)
 {
-  struct dea_text all = {.ctx = ctx};
-  const char *nearest;
-  DEA_TRY(ctx, dea_column_nearest(ctx, text, &nearest));
-  for (int c = 0; c < dea_column_count(ctx) && nearest == NULL; c++) {
-    dea_text_add(&all, "%s%s", c > 0 ? ", " : "", dea_column_at(ctx, c)->key);
-  }
-  const dea_status status =
-      dea_fail(ctx, DEA_E_ARGUMENT, "'%.80s' is not a quantity; %s%s%s", text,
-               nearest != NULL ? "did you mean '" : "there are ",
-               nearest != NULL ? nearest : dea_text_get(&all), nearest != NULL ? "'?" : "");
-  dea_text_free(&all);
-  return status;
+  char hint[DEA_HINT_SIZE];
+  DEA_TRY(ctx, dea_column_hint(ctx, text, "; there are ", hint));
+  return dea_fail(ctx, DEA_E_ARGUMENT, "'%.80s' is not a quantity%s", text, hint);
 }
 
 /* Columns of the quantities asked for [quantities.count]; which there are the runs say. */

@@ -70,9 +70,6 @@ static const struct dea_field bond_fields[] = {
                    .max = 1e13, .default_text = "1 MPa"),
 };
 
-static const struct dea_record bond_record = {"bond", "layer of glue between fibre and film",
-                                              bond_fields, COUNT(bond_fields)};
-
 // In the order of enum dea_outer_end.
 static const char *const outer_ends[] = {"clamped", "hinged", "free", NULL};
 
@@ -103,7 +100,7 @@ static const struct dea_field fibre_fields[] = {
                   .example = "3.75 mm stretched"),
     DEA_LABEL_ROW("material", AT(fibres.material), "pet", "material of the fibres",
                   .or_section = true, .default_text = "pet"),
-    DEA_FIELD_ROW(RECORD, "bond", 0, .record = &bond_record,
+    DEA_FIELD_ROW(RECORD, "bond", 0, .record = DEA_ROWS(bond_fields),
                   .doc = "layer of glue between fibre and film"),
     DEA_CHOICE_ROW("outer_end", AT(fibres.outer_end), outer_ends, "clamped",
                    "how the frame holds the fibre: its whole end, its lower edge only, not at all",
@@ -114,10 +111,6 @@ static const struct dea_field fibre_fields[] = {
                       "film between a free outer end and the frame; without effect on other ends",
                   .example = "1 mm stretched"),
 };
-
-static const struct dea_record fibres_record = {
-    "fibres", "radial fibres on the upper face, from the frame towards the centre", fibre_fields,
-    COUNT(fibre_fields)};
 
 // Drive -------------------------------------------------------------------------------------------
 
@@ -141,9 +134,6 @@ static const struct dea_field drive_fields[] = {
                    .absent_text = "none"),
 };
 
-static const struct dea_record drive_record = {"drive", "waveform and supply", drive_fields,
-                                               COUNT(drive_fields)};
-
 // Model 3d, and reduced ---------------------------------------------------------------------------
 
 // In the order of enum dea_solid_film, enum dea_solid_domain and enum dea_buckling_branch.
@@ -164,8 +154,6 @@ static const struct dea_field adapt_fields[] = {
     DEA_INTEGER_ROW("passes", AT(compute.solid.adapt.passes), "3", "meshes that are made at most",
                     .min = 1, .max = 12, .default_text = "5"),
 };
-static const struct dea_record adapt_record = {
-    "adapt", "refinement until a monitor is exact enough", adapt_fields, COUNT(adapt_fields)};
 
 static const struct dea_field solid_fields[] = {
     DEA_CHOICE_ROW("film", AT(compute.solid.film), films, "solid",
@@ -187,7 +175,7 @@ static const struct dea_field solid_fields[] = {
         "goes slack first, where that is finer; elements also grow slower there (of a disc)",
         .min = 1, .max = 6, .absent_text = "as refinement"),
     DEA_FIELD_ROW(
-        RECORD, "adapt", 0, .record = &adapt_record,
+        RECORD, "adapt", 0, .record = DEA_ROWS(adapt_fields),
         .present_offset = AT(compute.solid.adapt.asked),
         .doc =
             "finer where the error of a monitor at the last voltage comes from, until it is small "
@@ -221,9 +209,6 @@ static const struct dea_field solid_fields[] = {
                    .default_text = "no"),
 };
 
-static const struct dea_record solid_record = {"solid", "mesh of model 3d", solid_fields,
-                                               COUNT(solid_fields)};
-
 static const char *const motions[] = {"largest", "x", "y", "z", "turn_x", "turn_y", "turn_z", NULL};
 
 static const struct dea_field reduced_fields[] = {
@@ -256,9 +241,6 @@ static const struct dea_field reduced_fields[] = {
                    .max = 100, .default_text = "0 kg/m^3"),
 };
 
-static const struct dea_record reduced_record = {"reduced", "model reduced", reduced_fields,
-                                                 COUNT(reduced_fields)};
-
 // Compute -----------------------------------------------------------------------------------------
 
 static const struct dea_field compare_fields[] = {
@@ -273,9 +255,6 @@ static const struct dea_field compare_fields[] = {
         .doc = "keys of a design file with other values, as with --set; null takes a key away",
         .example = "{fibres.count: 8}"),
 };
-
-static const struct dea_record compare_record = {
-    "compare", "a design that this one is compared with", compare_fields, COUNT(compare_fields)};
 
 static const struct dea_field voltage_fields[] = {
     DEA_NUMBER_ROW("from", RAW(from_V), "V", "0 kV", "first voltage", .max = 1e6,
@@ -300,11 +279,6 @@ static const struct dea_field path_fields[] = {
                    .absent_text = "1.5 x pre_stretch, or all voltages"),
 };
 
-static const struct dea_record voltage_record = {"voltage", "voltages of a sweep", voltage_fields,
-                                                 COUNT(voltage_fields)};
-static const struct dea_record path_record = {
-    "path", "equilibrium path through pull-in and snap-through", path_fields, COUNT(path_fields)};
-
 // In the order of enum dea_coverage_by.
 static const char *const coverage_ways[] = {"radius", "area", NULL};
 
@@ -312,13 +286,15 @@ static const struct dea_field compute_fields[] = {
     DEA_LABEL_ROW("models", AT(compute.models), "[lumped, axisymmetric]", "models to be computed",
                   .default_text = "[lumped, axisymmetric]",
                   DEA_LIST(1, DEA_DESIGN_MODELS_MAX, struct dea_label, AT(compute.model_count))),
-    DEA_FIELD_ROW(RECORD, "voltage", 0, .record = &voltage_record, .doc = "voltages of the sweep"),
-    DEA_FIELD_ROW(RECORD, "path", 0, .record = &path_record, .doc = "equilibrium path"),
-    DEA_FIELD_ROW(RECORD, "solid", 0, .record = &solid_record, .doc = "mesh of model 3d"),
-    DEA_FIELD_ROW(RECORD, "reduced", 0, .record = &reduced_record,
+    DEA_FIELD_ROW(RECORD, "voltage", 0, .record = DEA_ROWS(voltage_fields),
+                  .doc = "voltages of the sweep"),
+    DEA_FIELD_ROW(RECORD, "path", 0, .record = DEA_ROWS(path_fields), .doc = "equilibrium path"),
+    DEA_FIELD_ROW(RECORD, "solid", 0, .record = DEA_ROWS(solid_fields), .doc = "mesh of model 3d"),
+    DEA_FIELD_ROW(RECORD, "reduced", 0, .record = DEA_ROWS(reduced_fields),
                   .doc = "range of model reduced, a fast model made by model 3d"),
     DEA_FIELD_ROW(
-        RECORD, "compare", AT(compute.compare), .record = &compare_record, .absent_text = "none",
+        RECORD, "compare", AT(compute.compare), .record = DEA_ROWS(compare_fields),
+        .absent_text = "none",
         .doc = "study compare-design: other designs in one figure with this one",
         DEA_LIST(1, DEA_DESIGN_VARIANTS_MAX, struct dea_design_variant, AT(compute.compare_count))),
     DEA_CHOICE_ROW(
@@ -358,17 +334,6 @@ static const struct dea_field report_fields[] = {
         .default_text = "whole"),
 };
 
-static const struct dea_record film_record = {"film", "the dielectric film", film_fields,
-                                              COUNT(film_fields)};
-static const struct dea_record frame_record = {"frame", "the frame that holds the pre-stretch",
-                                               frame_fields, COUNT(frame_fields)};
-static const struct dea_record electrodes_record = {
-    "electrodes", "a disc on both faces of the film", electrode_fields, COUNT(electrode_fields)};
-static const struct dea_record compute_record = {"compute", "what to compute", compute_fields,
-                                                 COUNT(compute_fields)};
-static const struct dea_record report_record = {"report", "how to report", report_fields,
-                                                COUNT(report_fields)};
-
 static const char *const gravities[] = {"off", "fibres_up", "fibres_down", NULL}; // dea_gravity
 
 static const struct dea_field design_fields[] = {
@@ -377,17 +342,17 @@ static const struct dea_field design_fields[] = {
     DEA_LABEL_ROW("title", AT(title), "Actuator with four fibres",
                   "what the design is, for figures and reports", .absent_text = "none",
                   .one_line = true),
-    DEA_FIELD_ROW(RECORD, "film", 0, .record = &film_record, .required = true,
+    DEA_FIELD_ROW(RECORD, "film", 0, .record = DEA_ROWS(film_fields), .required = true,
                   .doc = "the dielectric film"),
     DEA_NUMBER_ROW("pre_stretch", AT(pre_stretch), "1", "1.5",
                    "equibiaxial stretch at which the frame holds the film; 1: none", .min = 1,
                    .max = 10, .required = true),
-    DEA_FIELD_ROW(RECORD, "frame", 0, .record = &frame_record, .required = true,
+    DEA_FIELD_ROW(RECORD, "frame", 0, .record = DEA_ROWS(frame_fields), .required = true,
                   .doc = "the frame that holds the pre-stretch"),
-    DEA_FIELD_ROW(RECORD, "electrodes", 0, .record = &electrodes_record, .required = true,
+    DEA_FIELD_ROW(RECORD, "electrodes", 0, .record = DEA_ROWS(electrode_fields), .required = true,
                   .doc = "a disc on both faces of the film"),
-    DEA_FIELD_ROW(RECORD, "fibres", 0, .record = &fibres_record, .present_offset = AT(has_fibres),
-                  .absent_text = "none",
+    DEA_FIELD_ROW(RECORD, "fibres", 0, .record = DEA_ROWS(fibre_fields),
+                  .present_offset = AT(has_fibres), .absent_text = "none",
                   .doc = "radial fibres on the upper face; without this section there are none"),
     DEA_CHOICE_ROW("gravity", AT(gravity), gravities, "fibres_up",
                    "weight, and which way the side of the fibres faces (3d); without fibres: +z",
@@ -396,22 +361,19 @@ static const struct dea_field design_fields[] = {
                    "temperature of the device: chooses among sets of a material that were measured "
                    "at different ones, and shifts the times of branches (wlf)",
                    .min = 100, .max = 600, .absent_text = "unknown"),
-    DEA_FIELD_ROW(RECORD, "drive", 0, .record = &drive_record,
+    DEA_FIELD_ROW(RECORD, "drive", 0, .record = DEA_ROWS(drive_fields),
                   .doc = "waveform and supply for what happens in time"),
     DEA_FIELD_ROW(
-        RECORD, "materials", RAW(materials), .record = &dea_material_inline_record,
+        RECORD, "materials", AT(materials), .record = &dea_material_inline_record,
         .absent_text = "none of its own",
         .doc = "materials of this design; they go before those of the catalogue",
-        DEA_LIST(1, DEA_DESIGN_MATERIALS_MAX, struct dea_material_data, AT(material_count))),
-    DEA_FIELD_ROW(RECORD, "compute", 0, .record = &compute_record, .doc = "what to compute"),
+        DEA_OWN_LIST(1, DEA_DESIGN_MATERIALS_MAX, struct dea_material_data, AT(material_count))),
+    DEA_FIELD_ROW(RECORD, "compute", 0, .record = DEA_ROWS(compute_fields),
+                  .doc = "what to compute"),
     DEA_FIELD_ROW(RECORD, "fabrication", 0, .record = &dea_fabrication_record,
                   .doc = "what `dea fab` needs to make files for the workshop"),
-    DEA_FIELD_ROW(RECORD, "report", 0, .record = &report_record, .doc = "how to report"),
+    DEA_FIELD_ROW(RECORD, "report", 0, .record = DEA_ROWS(report_fields), .doc = "how to report"),
 };
-
-static const struct dea_record design_record = {"design file",
-                                                "design of a dielectric elastomer actuator",
-                                                design_fields, COUNT(design_fields)};
 
 /* The row of a study's section. */
 static struct dea_field section_field(const struct dea_design_section *section, size_t index)
@@ -485,7 +447,6 @@ static void fill_compute(const struct dea_design_sections *sections, bool genera
                          struct dea_design_form *out)
 {
   size_t count = 0;
-  out->compute_record = compute_record;
   for (size_t i = 0; i < COUNT(compute_fields); i++) {
     if (!general || strncmp(compute_fields[i].key, "coverage", strlen("coverage")) != 0) {
       out->compute[count++] = compute_fields[i];
@@ -498,10 +459,9 @@ static void fill_compute(const struct dea_design_sections *sections, bool genera
   for (size_t i = 0; i < sections->count && i < DEA_DESIGN_SECTIONS_MAX; i++) {
     out->compute[count++] = section_field(sections->items[i], i);
   }
-  out->compute_record.fields = out->compute;
-  out->compute_record.field_count = count;
+  out->compute_record = (struct dea_record){.fields = out->compute, .field_count = count};
   for (size_t i = 0; i < out->record.field_count; i++) {
-    if (out->top[i].record == &compute_record) {
+    if (strcmp(out->top[i].key, "compute") == 0) {
       out->top[i].record = &out->compute_record;
     }
   }
@@ -552,8 +512,8 @@ void dea_design_schema_fill(const struct dea_design_sections *sections,
   static_assert(COUNT(compute_fields) + DEA_DESIGN_SECTIONS_MAX <= DEA_DESIGN_COMPUTE_MAX,
                 "room for all of compute");
   dea_shape_schema_fill(&out->shapes);
-  out->disc.record = design_record;
-  out->disc.record.field_count = 0;
+  out->disc.record =
+      (struct dea_record){"design file", "design of a dielectric elastomer actuator", NULL, 0};
   add_fields(&out->disc, design_fields, COUNT(design_fields));
   add_fields(&out->disc, not_short, COUNT(not_short));
   fill_general(&out->shapes, &out->general);

@@ -19,8 +19,9 @@ struct dea_design_raw {
   size_t figure_count;
   struct dea_quantity fields_at_V[DEA_DESIGN_FIELDS_MAX];
   size_t fields_at_count;
-  struct dea_material_data materials[DEA_DESIGN_MATERIALS_MAX];
-  struct dea_parts_raw parts; // of the general form
+  struct dea_parts parts; // of the general form, until the design has them
+  const struct dea_node *shapes[DEA_PARTS_SHAPES_MAX]; // of several kinds: dea_parts_read
+  size_t shape_count;
 };
 
 /* Parts of the table that have a file of their own; base as below. */

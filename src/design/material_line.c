@@ -38,20 +38,15 @@ static dea_status refuse_key(struct line *line, const struct dea_node *key)
   size_t count, named = 0;
   const struct dea_law *const *laws = dea_law_all(&count);
   const char *names[NAMES_MAX];
-  struct dea_text list = {.ctx = line->ctx};
+  char hint[DEA_HINT_SIZE];
   for (size_t i = 0; i < PROPERTIES + count && named < NAMES_MAX; i++) {
     if (i < PROPERTIES || laws[i - PROPERTIES]->compressible == NULL) {
       names[named++] = i < PROPERTIES ? properties[i].key : laws[i - PROPERTIES]->name;
-      dea_text_add(&list, "%s%s", named > 1 ? ", " : "", names[named - 1]);
     }
   }
-  const char *nearest = dea_nearest_name(key->key, names, named);
-  const dea_status status = dea_finding_add(
-      line->ctx, DEA_ERROR, key->key_place, "a material in one line has no '%.60s'%s%s%s: %s",
-      key->key, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-      nearest != NULL ? "'? It has" : "; it has", dea_text_get(&list));
-  dea_text_free(&list);
-  return status;
+  dea_name_hint_list(key->key, names, named, " It has: ", "; it has: ", hint);
+  return dea_finding_add(line->ctx, DEA_ERROR, key->key_place,
+                         "a material in one line has no '%.60s'%s", key->key, hint);
 }
 
 /* "laws: [{id: own, law: yeoh, parameters: {c1: $, c2: $}, source: own}]"; of a list of values in

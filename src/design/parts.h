@@ -135,10 +135,9 @@ struct dea_parts_monitor {
 };
 
 struct dea_parts {
-  struct dea_context *ctx;
-  struct dea_arena memory; // of all lists
+  struct dea_arena memory; // of shapes, points and rows
   struct dea_parts_shape *shapes;
-  struct dea_parts_ply *plies; // from bottom to top
+  struct dea_parts_ply *plies; // from bottom to top; owned, and the lists that follow too
   struct dea_parts_electrode *electrodes;
   struct dea_parts_channel *channels;
   struct dea_parts_support *supports;
@@ -155,5 +154,7 @@ struct dea_parts {
 /* Whether a channel has a waveform of its own; of NULL: false. */
 bool dea_parts_in_time(const struct dea_parts *parts);
 
+/* Frees what is in the parts, which then are empty. */
+void dea_parts_clear(struct dea_context *ctx, struct dea_parts *parts);
 /* NULL is fine. */
 void dea_parts_destroy(struct dea_context *ctx, struct dea_parts *parts);

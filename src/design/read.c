@@ -4,6 +4,7 @@
 #include "design/design_sections.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,77 +17,57 @@ struct source {
   size_t override_count;
 };
 
-/* Points of a sweep from `from` to `to`; 0 when the step does not fit or there are too many. */
-static size_t sweep_count(double from, double to, double step)
+/* The voltages from `from` to `to`: their number, 0 after an error, and the last one. */
+static dea_status find_sweep(struct dea_context *ctx, const struct dea_design_raw *raw,
+                             size_t *count, double *end)
 {
-  double steps = floor(fabs(to - from) / step * (1 + 1e-12) + 1e-9);
-  return steps < DEA_DESIGN_VOLTAGES_MAX ? (size_t)steps + 1 : 0;
-}
-
-static dea_status build_sweep(struct dea_context *ctx, struct dea_design_raw *raw)
-{
-  struct dea_design *design = &raw->design;
-  double from = raw->from_V.si, to = raw->to_V.si, step = raw->step_V.si;
+  const double from = raw->from_V.si, to = raw->to_V.si, step = raw->step_V.si;
+  const double whole = fabs(to - from), steps = floor(whole / step * (1 + 1e-12) + 1e-9);
+  *count = 0;
+  *end = to;
   if (isnan(from) || isnan(to) || isnan(step)) {
     return DEA_OK; // already an error
   }
-  size_t count = sweep_count(from, to, step);
-  if (count == 0) {
+  if (!(steps < DEA_DESIGN_VOLTAGES_MAX)) {
     return dea_finding_add(ctx, DEA_ERROR, raw->step_V.location,
                            "step: from %g V to %g V in steps of %g V are more than %d voltages",
                            from, to, step, DEA_DESIGN_VOLTAGES_MAX);
   }
-  double span = step * (double)(count - 1), whole = fabs(to - from);
-  bool reaches = fabs(span - whole) <= 1e-6 * step;
-  if (!reaches) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, raw->step_V.location,
-                                 "step: steps of %g V from %g V do not meet %g V; the last voltage "
-                                 "is %g V",
-                                 step, from, to, from + copysign(span, to - from)));
-  }
-  double end = reaches ? to : from + copysign(span, to - from);
-  design->compute.voltages_V = dea_alloc(ctx, count, sizeof *design->compute.voltages_V);
-  DEA_TRY_MEMORY(design->compute.voltages_V != NULL);
-  design->compute.voltage_count = count;
-  for (size_t i = 0; i < count; i++) {
-    design->compute.voltages_V[i] =
-        count > 1 ? from + (end - from) * (double)i / (double)(count - 1) : from;
-  }
-  return DEA_OK;
-}
-
-/* The same way back, without the last voltage twice. */
-static dea_status add_way_back(struct dea_context *ctx, struct dea_design *design)
-{
-  size_t count = design->compute.voltage_count;
-  if (count < 2) {
+  *count = (size_t)steps + 1;
+  if (fabs(step * steps - whole) <= 1e-6 * step) {
     return DEA_OK;
   }
-  double *both = dea_resize(ctx, design->compute.voltages_V, 2 * count - 1, sizeof *both);
-  DEA_TRY_MEMORY(both != NULL);
-  for (size_t i = 0; i + 1 < count; i++) {
-    both[count + i] = both[count - 2 - i];
-  }
-  design->compute.voltages_V = both;
-  design->compute.voltage_count = 2 * count - 1;
-  return DEA_OK;
+  *end = from + copysign(step * steps, to - from);
+  return dea_finding_add(ctx, DEA_WARNING, raw->step_V.location,
+                         "step: steps of %g V from %g V do not meet %g V; the last voltage "
+                         "is %g V",
+                         step, from, to, *end);
 }
 
+/* Those that are listed or of the sweep; and the same way back, without the last one twice. */
 static dea_status read_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
 {
   struct dea_design *design = &raw->design;
-  if (raw->voltage_count == 0) {
-    design->compute.voltages_place = raw->to_V.location;
-    return build_sweep(ctx, raw);
+  const bool listed = raw->voltage_count > 0;
+  const double from = raw->from_V.si;
+  size_t count = raw->voltage_count;
+  double end = NAN;
+  design->compute.voltages_place = listed ? raw->voltages_V[0].location : raw->to_V.location;
+  DEA_TRY(ctx, listed ? DEA_OK : find_sweep(ctx, raw, &count, &end));
+  if (count == 0) {
+    return DEA_OK;
   }
-  design->compute.voltages_place = raw->voltages_V[0].location;
-  design->compute.voltages_V =
-      dea_alloc(ctx, raw->voltage_count, sizeof *design->compute.voltages_V);
-  DEA_TRY_MEMORY(design->compute.voltages_V != NULL);
-  design->compute.voltage_count = raw->voltage_count;
-  for (size_t i = 0; i < raw->voltage_count; i++) {
-    design->compute.voltages_V[i] = raw->voltages_V[i].si;
+  const size_t all = raw->back.value == 1 ? 2 * count - 1 : count;
+  double *voltages_V = dea_alloc(ctx, all, sizeof *voltages_V);
+  DEA_TRY_MEMORY(voltages_V != NULL);
+  for (size_t i = 0; i < all; i++) {
+    const size_t k = i < count ? i : 2 * count - 2 - i;
+    voltages_V[i] = listed      ? raw->voltages_V[k].si
+                    : count > 1 ? from + (end - from) * (double)k / (double)(count - 1)
+                                : from;
   }
+  design->compute.voltages_V = voltages_V;
+  design->compute.voltage_count = all;
   return DEA_OK;
 }
 
@@ -97,12 +78,6 @@ double dea_design_highest_V(const struct dea_design *design)
     highest_V = fmax(highest_V, design->compute.voltages_V[i]);
   }
   return highest_V;
-}
-
-static dea_status parse_voltages(struct dea_context *ctx, struct dea_design_raw *raw)
-{
-  DEA_TRY(ctx, read_voltages(ctx, raw));
-  return raw->back.value == 1 ? add_way_back(ctx, &raw->design) : DEA_OK;
 }
 
 /* The end of the path: by default 1.5 times the pre-stretch, which is past pull-in of usual films,
@@ -210,27 +185,16 @@ static dea_status read_fields(struct dea_context *ctx, struct dea_design_raw *ra
   return DEA_OK;
 }
 
-static dea_status read_materials(const struct dea_reader *reader, struct dea_design_raw *raw)
+static dea_status read_materials(const struct dea_reader *reader, struct dea_design *design)
 {
   struct dea_context *ctx = reader->ctx;
-  struct dea_design *design = &raw->design;
   for (size_t i = 0; i < design->material_count; i++) {
     char path[32];
     snprintf(path, sizeof path, "materials[%zu]", i);
-    DEA_TRY(ctx, dea_material_data_finish(reader, path, &raw->materials[i]));
-    const struct dea_label *name = &raw->materials[i].name;
-    for (size_t j = 0; j < i && name->text[0] != '\0'; j++) {
-      if (strcmp(name->text, raw->materials[j].name.text) == 0) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
-                                     "the name '%.60s' is taken by the material in line %zu",
-                                     name->text, raw->materials[j].name.location.line));
-      }
-    }
+    DEA_TRY(ctx, dea_material_data_finish(reader, path, &design->materials[i]));
   }
-  design->materials = dea_alloc(ctx, design->material_count, sizeof *design->materials);
-  DEA_TRY_MEMORY(design->materials != NULL);
-  memcpy(design->materials, raw->materials, design->material_count * sizeof *design->materials);
-  return DEA_OK;
+  return dea_check_names(ctx, "material", design->materials, design->material_count,
+                         sizeof *design->materials, offsetof(struct dea_material_data, name));
 }
 
 /* The document of a source with all that changes it. */
@@ -275,13 +239,17 @@ static dea_status read_raw(struct dea_context *ctx, const struct source *source,
           dea_schema_read(&reader, plies != NULL ? &schema.general.record : &schema.disc.record,
                           root, "", raw));
   if (plies != NULL) {
-    DEA_TRY(ctx,
-            dea_parts_read(&reader, &schema.shapes, design->file, &raw->parts, &design->parts));
+    design->parts = dea_alloc(ctx, 1, sizeof *design->parts);
+    DEA_TRY_MEMORY(design->parts != NULL);
+    *design->parts = raw->parts;
+    raw->parts = (struct dea_parts){0};
     design->parts->place = plies->key_place;
+    DEA_TRY(ctx, dea_parts_read(&reader, &schema.shapes, design->file, raw->shapes,
+                                raw->shape_count, design->parts));
   }
   if (root->kind == DEA_NODE_SECTION) {
-    DEA_TRY(ctx, read_materials(&reader, raw));
-    DEA_TRY(ctx, parse_voltages(ctx, raw));
+    DEA_TRY(ctx, read_materials(&reader, design));
+    DEA_TRY(ctx, read_voltages(ctx, raw));
     DEA_TRY(ctx, read_path(ctx, design));
     DEA_TRY(ctx, check_models(ctx, design));
     DEA_TRY(ctx, read_drive(&reader, design));
@@ -332,6 +300,7 @@ static dea_status read_source(struct dea_context *ctx, const struct source *sour
     **out = raw->design;
   } else {
     clear_design(ctx, &raw->design);
+    dea_parts_clear(ctx, &raw->parts);
   }
   dea_free(ctx, raw);
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -18,28 +18,59 @@ static void read_shapes(const struct dea_node *node, struct dea_parts_shape *sha
   }
 }
 
-/* Numbers of a DEA_FIELD_ROWS of two columns into the parts' memory. */
+/* A number of a row; NAN after a finding. */
+static dea_status read_cell(const struct dea_reader *reader, const struct dea_node *node,
+                            const char *key, const struct dea_measure *due, double *out)
+{
+  char why[DEA_WHY_SIZE];
+  if (node->kind != DEA_NODE_VALUE || node->empty) {
+    return dea_schema_error(reader, node->location, "%s: a number such as '%s' is missing here",
+                            key, due->example);
+  }
+  if (dea_units_read(reader->ctx, node->text, *due, out, why)) {
+    return DEA_OK;
+  }
+  return why[0] == '\0' ? dea_context_status(reader->ctx)
+                        : dea_schema_error(reader, node->location, "%s: %s", key, why);
+}
+
+/* Numbers of a DEA_FIELD_ROWS of two columns, at least `least` rows, in SI into the parts' memory;
+ * none after a finding. */
 static dea_status read_rows(const struct dea_reader *reader, struct dea_parts *parts,
                             const struct dea_node *node, const char *key,
                             const struct dea_measure due[2], size_t least, const double (**out)[2],
                             size_t *count)
 {
-  double *rows;
+  struct dea_context *ctx = reader->ctx;
+  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   *out = NULL;
   *count = 0;
   if (node == NULL) {
     return DEA_OK;
   }
-  DEA_TRY(reader->ctx, dea_schema_rows(reader, node, key, due, 2, least, &rows, count));
-  double(*kept)[2] = rows != NULL ? dea_arena_alloc(&parts->memory, *count, sizeof *kept) : NULL;
-  for (size_t i = 0; i < *count && kept != NULL; i++) {
-    kept[i][0] = rows[2 * i];
-    kept[i][1] = rows[2 * i + 1];
+  if (node->child_count < least) {
+    return dea_schema_error(reader, node->location,
+                            "%s needs %zu or more of lists such as [%s, %s], not %zu", key, least,
+                            due[0].example, due[1].example, node->child_count);
   }
-  *out = (const double(*)[2])kept;
-  *count = kept != NULL ? *count : 0;
-  dea_free(reader->ctx, rows);
-  return dea_arena_status(&parts->memory);
+  double(*rows)[2] = dea_arena_alloc(&parts->memory, node->child_count, sizeof *rows);
+  DEA_TRY_MEMORY(rows != NULL);
+  size_t i = 0;
+  for (const struct dea_node *row = node->child; row != NULL; row = row->next, i++) {
+    if (row->kind != DEA_NODE_LIST || row->child_count != 2) {
+      DEA_TRY(ctx, dea_schema_error(reader, row->location,
+                                    "%s: this must be a list of 2 numbers such as [%s, %s]", key,
+                                    due[0].example, due[1].example));
+      continue;
+    }
+    DEA_TRY(ctx, read_cell(reader, row->child, key, &due[0], &rows[i][0]));
+    DEA_TRY(ctx, read_cell(reader, row->child->next, key, &due[1], &rows[i][1]));
+  }
+  if (dea_finding_count(ctx, DEA_ERROR) == errors) {
+    *out = (const double(*)[2])rows;
+    *count = node->child_count;
+  }
+  return DEA_OK;
 }
 
 /* A shape that is none of the plane, which no name nearby would help with. */
@@ -114,18 +145,17 @@ static dea_status read_table(const struct dea_reader *reader, struct dea_parts *
   return DEA_OK;
 }
 
-/* A name that stands twice among parts of one kind. */
-static dea_status check_names(const struct dea_reader *reader, const char *what, const void *items,
-                              size_t count, size_t size, size_t offset)
+dea_status dea_check_names(struct dea_context *ctx, const char *what, const void *items,
+                           size_t count, size_t size, size_t offset)
 {
   for (size_t i = 0; i < count; i++) {
     const struct dea_label *a = (const void *)((const char *)items + i * size + offset);
     for (size_t j = 0; j < i && a->text[0] != '\0'; j++) {
       const struct dea_label *b = (const void *)((const char *)items + j * size + offset);
       if (strcmp(a->text, b->text) == 0) {
-        DEA_TRY(reader->ctx, dea_schema_error(reader, a->location,
-                                              "the name '%.60s' is taken by the %s in line %zu",
-                                              a->text, what, b->location.line));
+        DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, a->location,
+                                     "the name '%.60s' is taken by the %s in line %zu", a->text,
+                                     what, b->location.line));
         break;
       }
     }
@@ -133,45 +163,18 @@ static dea_status check_names(const struct dea_reader *reader, const char *what,
   return DEA_OK;
 }
 
-#define CHECK_NAMES(what, items, count)                                                            \
-  check_names(reader, what, items, count, sizeof *(items), offsetof_name(items))
-#define offsetof_name(items) ((size_t)((const char *)&(items)->name - (const char *)(items)))
+#define CHECK_NAMES(what, type, items, count)                                                      \
+  dea_check_names(ctx, what, items, count, sizeof *(items), offsetof(struct type, name))
 
-static dea_status check_all_names(const struct dea_reader *reader, const struct dea_parts *p)
+static dea_status check_all_names(struct dea_context *ctx, const struct dea_parts *p)
 {
-  DEA_TRY(reader->ctx, CHECK_NAMES("shape", p->shapes, p->shape_count));
-  DEA_TRY(reader->ctx, CHECK_NAMES("ply", p->plies, p->ply_count));
-  DEA_TRY(reader->ctx, CHECK_NAMES("channel", p->channels, p->channel_count));
-  DEA_TRY(reader->ctx, CHECK_NAMES("body", p->bodies, p->body_count));
-  DEA_TRY(reader->ctx, CHECK_NAMES("pressure", p->pressures, p->pressure_count));
-  DEA_TRY(reader->ctx, CHECK_NAMES("contact", p->contacts, p->contact_count));
-  return CHECK_NAMES("monitor", p->monitors, p->monitor_count);
-}
-
-/* Copies the lists of one table. */
-#define TAKE(items, counter)                                                                       \
-  do {                                                                                             \
-    parts->items = dea_arena_alloc(&parts->memory, raw->counter, sizeof *parts->items);            \
-    if (parts->items != NULL) {                                                                    \
-      memcpy(parts->items, raw->items, raw->counter * sizeof *parts->items);                       \
-      parts->counter = raw->counter;                                                               \
-    }                                                                                              \
-  } while (0)
-
-static dea_status read_lists(const struct dea_parts_raw *raw, struct dea_parts *parts)
-{
-  parts->shapes = dea_arena_alloc(&parts->memory, raw->shape_count, sizeof *parts->shapes);
-  parts->shape_count = parts->shapes != NULL ? raw->shape_count : 0;
-  TAKE(plies, ply_count);
-  TAKE(electrodes, electrode_count);
-  TAKE(channels, channel_count);
-  TAKE(supports, support_count);
-  TAKE(bodies, body_count);
-  TAKE(springs, spring_count);
-  TAKE(pressures, pressure_count);
-  TAKE(contacts, contact_count);
-  TAKE(monitors, monitor_count);
-  return dea_arena_status(&parts->memory);
+  DEA_TRY(ctx, CHECK_NAMES("shape", dea_parts_shape, p->shapes, p->shape_count));
+  DEA_TRY(ctx, CHECK_NAMES("ply", dea_parts_ply, p->plies, p->ply_count));
+  DEA_TRY(ctx, CHECK_NAMES("channel", dea_parts_channel, p->channels, p->channel_count));
+  DEA_TRY(ctx, CHECK_NAMES("body", dea_parts_body, p->bodies, p->body_count));
+  DEA_TRY(ctx, CHECK_NAMES("pressure", dea_parts_pressure, p->pressures, p->pressure_count));
+  DEA_TRY(ctx, CHECK_NAMES("contact", dea_parts_contact, p->contacts, p->contact_count));
+  return CHECK_NAMES("monitor", dea_parts_monitor, p->monitors, p->monitor_count);
 }
 
 /* beside: the design file. */
@@ -204,18 +207,17 @@ static dea_status check_lines(const struct dea_reader *reader, const struct dea_
 }
 
 dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shape_schema *schema,
-                          const char *beside, const struct dea_parts_raw *raw,
-                          struct dea_parts **out)
+                          const char *beside, const struct dea_node *const *shapes, size_t count,
+                          struct dea_parts *parts)
 {
   struct dea_context *ctx = reader->ctx;
-  struct dea_parts *parts = dea_alloc(ctx, 1, sizeof *parts);
-  *out = parts;
-  DEA_TRY_MEMORY(parts != NULL);
-  *parts = (struct dea_parts){.ctx = ctx, .memory = {.ctx = ctx}};
-  DEA_TRY(ctx, read_lists(raw, parts));
-  for (size_t i = 0; i < parts->shape_count; i++) {
-    if (raw->shapes[i] != NULL) { // else it is no section, which was said
-      DEA_TRY(ctx, read_shape(reader, schema, raw->shapes[i], i, parts));
+  parts->memory.ctx = ctx;
+  parts->shapes = dea_arena_alloc(&parts->memory, count, sizeof *parts->shapes);
+  DEA_TRY_MEMORY(parts->shapes != NULL);
+  parts->shape_count = count;
+  for (size_t i = 0; i < count; i++) {
+    if (shapes[i] != NULL) { // else it is no section, which was said
+      DEA_TRY(ctx, read_shape(reader, schema, shapes[i], i, parts));
     }
   }
   for (size_t i = 0; i < parts->spring_count; i++) {
@@ -223,7 +225,7 @@ dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shap
   }
   DEA_TRY(ctx, read_waveforms(reader, beside, parts));
   DEA_TRY(ctx, check_lines(reader, parts));
-  return check_all_names(reader, parts);
+  return check_all_names(ctx, parts);
 }
 
 bool dea_parts_in_time(const struct dea_parts *parts)
@@ -235,13 +237,25 @@ bool dea_parts_in_time(const struct dea_parts *parts)
   return any;
 }
 
+void dea_parts_clear(struct dea_context *ctx, struct dea_parts *parts)
+{
+  void *const lists[] = {parts->plies,     parts->electrodes, parts->channels,
+                         parts->supports,  parts->bodies,     parts->springs,
+                         parts->pressures, parts->contacts,   parts->monitors};
+  for (size_t i = 0; i < parts->channel_count; i++) {
+    dea_waveform_destroy(parts->channels[i].waveform);
+  }
+  for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+    dea_free(ctx, lists[i]);
+  }
+  dea_arena_free(&parts->memory);
+  *parts = (struct dea_parts){0};
+}
+
 void dea_parts_destroy(struct dea_context *ctx, struct dea_parts *parts)
 {
   if (parts != NULL) {
-    for (size_t i = 0; i < parts->channel_count; i++) {
-      dea_waveform_destroy(parts->channels[i].waveform);
-    }
-    dea_arena_free(&parts->memory);
+    dea_parts_clear(ctx, parts);
     dea_free(ctx, parts);
   }
 }

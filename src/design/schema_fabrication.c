@@ -16,8 +16,6 @@ static const struct dea_field sheet_fields[] = {
     DEA_NUMBER_ROW("gap", AT(sheet.gap_m), "m", "3 mm", "distance between parts on a sheet",
                    .max = 1, .default_text = "3 mm"),
 };
-static const struct dea_record sheet_record = {"sheet", "material that parts are cut from",
-                                               sheet_fields, COUNT(sheet_fields)};
 
 static const struct dea_field blank_fields[] = {
     DEA_FIELD_ROW(INPLANE, "margin", AT(blank.margin), .unit = "m", .max = 1,
@@ -25,8 +23,6 @@ static const struct dea_field blank_fields[] = {
                   .doc = "film beyond the outer edge of the frame, for the grips of the stretcher",
                   .example = "10 mm stretched"),
 };
-static const struct dea_record blank_record = {"blank", "film as it is cut", blank_fields,
-                                               COUNT(blank_fields)};
 
 static const struct dea_field frame_fields[] = {
     DEA_NUMBER_ROW("width", AT(ring.width_m), "m", "10 mm",
@@ -41,9 +37,6 @@ static const struct dea_field frame_fields[] = {
                    "is reached; 0: none",
                    .max = 1, .default_text = "3 mm"),
 };
-static const struct dea_record frame_record = {
-    "frame", "the plate that holds a stretched film, or an edge that is a support", frame_fields,
-    COUNT(frame_fields)};
 
 static const struct dea_field leads_fields[] = {
     DEA_FIELD_ROW(INPLANE, "width", AT(leads.width), .unit = "m", .above_min = true, .max = 1,
@@ -57,10 +50,6 @@ static const struct dea_field leads_fields[] = {
                    "the fibres; that of the bottom electrode goes to the other side",
                    .min = -7, .max = 7, .absent_text = "halfway between two fibres"),
 };
-static const struct dea_record leads_record = {
-    "leads", "leads of the electrodes, with a pad on the ring", leads_fields, COUNT(leads_fields)};
-static const struct dea_record general_leads_record = {
-    "leads", "leads of the electrodes that have one, with a pad on the frame", leads_fields, 2};
 
 static const struct dea_field ring_fields[] = {
     DEA_NUMBER_ROW("width", AT(ring.width_m), "m", "10 mm",
@@ -71,9 +60,6 @@ static const struct dea_field ring_fields[] = {
                    "is reached; 0: none",
                    .max = 1, .default_text = "3 mm"),
 };
-static const struct dea_record ring_record = {
-    "ring", "the frame as a part: a ring around its inner diameter", ring_fields,
-    COUNT(ring_fields)};
 
 static const struct dea_field holder_fields[] = {
     DEA_NUMBER_ROW("anchor", AT(holder.anchor_m), "m", "3 mm",
@@ -86,8 +72,6 @@ static const struct dea_field holder_fields[] = {
                    "length of the tab; of a free fibre, on the ring", .above_min = true, .max = 1,
                    .default_text = "1.5 mm"),
 };
-static const struct dea_record holder_record = {
-    "holder", "what holds the fibres until they are bonded", holder_fields, COUNT(holder_fields)};
 
 static const struct dea_field marks_fields[] = {
     DEA_FIELD_ROW(INPLANE, "diameter", AT(mark_diameter), .unit = "m", .above_min = true,
@@ -99,9 +83,6 @@ static const struct dea_field marks_fields[] = {
         .doc = "spacing of the grid of crosses on the film, from which the pre-stretch is measured",
         .example = "5 mm unstretched"),
 };
-static const struct dea_record marks_record = {
-    "marks", "alignment marks, which meet in all sheets, and the grid that shows the pre-stretch",
-    marks_fields, COUNT(marks_fields)};
 
 static const struct dea_field cure_fields[] = {
     DEA_NUMBER_ROW("temperature", AT(cure_temperature_K), "K", "80 degC", "temperature",
@@ -109,8 +90,6 @@ static const struct dea_field cure_fields[] = {
     DEA_NUMBER_ROW("time", AT(cure_time_s), "s", "4 h", "time of each curing", .above_min = true,
                    .max = 1e7, .default_text = "4 h"),
 };
-static const struct dea_record cure_record = {"cure", "curing of the printed electrodes",
-                                              cure_fields, COUNT(cure_fields)};
 
 static const struct dea_field tolerance_fields[] = {
     DEA_NUMBER_ROW("thickness", AT(tolerance.thickness), "1", "5 %",
@@ -129,72 +108,53 @@ static const struct dea_field tolerance_fields[] = {
                   .doc = "of the distance of a fibre tip from the centre",
                   .example = "0.2 mm stretched"),
 };
-static const struct dea_record tolerance_record = {"tolerance", "tolerances of the check list",
-                                                   tolerance_fields, COUNT(tolerance_fields)};
-static const struct dea_record general_tolerance_record = {
-    "tolerance", "tolerances of the check list", tolerance_fields, 2}; // of any film
 
-#define KERF_ROW                                                                                   \
-  {                                                                                                \
-    .key = "kerf", .kind = DEA_FIELD_NUMBER, .offset = AT(kerf_m), .unit = "m", .max = 0.01,       \
-    .default_text = "0.2 mm",                                                                      \
-    .doc = "width of the cut: paths lie half of it outside of parts and inside of holes",          \
-    .example = "0.2 mm"                                                                            \
-  }
-#define FEATURE_ROW                                                                                \
-  {                                                                                                \
-    .key = "minimum_feature", .kind = DEA_FIELD_NUMBER, .offset = AT(minimum_feature_m),           \
-    .unit = "m", .above_min = true, .max = 0.1, .default_text = "0.5 mm",                          \
-    .doc = "narrowest web, slot or hole that the cutter makes", .example = "0.5 mm"                \
-  }
-#define COPIES_ROW                                                                                 \
-  {                                                                                                \
-    .key = "copies", .kind = DEA_FIELD_INTEGER, .offset = AT(copies), .unit = "1", .min = 1,       \
-    .max = DEA_DESIGN_COPIES_MAX, .default_text = "1", .doc = "actuators to be made",              \
-    .example = "4"                                                                                 \
-  }
-#define SECTION_ROW(word, its, words)                                                              \
-  {                                                                                                \
-    .key = word, .kind = DEA_FIELD_RECORD, .record = &its, .doc = words                            \
-  }
-#define SHEET_ROW SECTION_ROW("sheet", sheet_record, "material that parts are cut from")
-#define MARKS_ROW                                                                                  \
-  SECTION_ROW("marks", marks_record, "alignment marks, and the grid that shows the pre-stretch")
-#define CURE_ROW SECTION_ROW("cure", cure_record, "curing of the printed electrodes")
+#define SECTION_ROW(word, rows, words)                                                             \
+  DEA_FIELD_ROW(RECORD, word, 0, .record = DEA_ROWS(rows), .doc = words)
+/* Of a section of which the general form has the first two keys only. */
+#define SHORT_ROW(word, rows, words)                                                               \
+  DEA_FIELD_ROW(RECORD, word, 0, .doc = words,                                                     \
+                .record = &(const struct dea_record){.fields = (rows), .field_count = 2})
+
+/* Rows of both forms. */
+#define CUT_ROWS                                                                                   \
+  DEA_NUMBER_ROW("kerf", AT(kerf_m), "m", "0.2 mm",                                                \
+                 "width of the cut: paths lie half of it outside of parts and inside of holes",    \
+                 .max = 0.01, .default_text = "0.2 mm"),                                           \
+      DEA_NUMBER_ROW("minimum_feature", AT(minimum_feature_m), "m", "0.5 mm",                      \
+                     "narrowest web, slot or hole that the cutter makes", .above_min = true,       \
+                     .max = 0.1, .default_text = "0.5 mm"),                                        \
+      DEA_INTEGER_ROW("copies", AT(copies), "4", "actuators to be made", .min = 1,                 \
+                      .max = DEA_DESIGN_COPIES_MAX, .default_text = "1"),                          \
+      SECTION_ROW("sheet", sheet_fields, "material that parts are cut from")
+#define PRINT_ROWS                                                                                 \
+  SECTION_ROW("marks", marks_fields, "alignment marks, and the grid that shows the pre-stretch"),  \
+      SECTION_ROW("cure", cure_fields, "curing of the printed electrodes")
 
 static const struct dea_field fields[] = {
-    KERF_ROW,
-    FEATURE_ROW,
-    COPIES_ROW,
-    SHEET_ROW,
-    SECTION_ROW("blank", blank_record, "film as it is cut"),
-    SECTION_ROW("leads", leads_record, "leads of the electrodes, with a pad on the ring"),
-    SECTION_ROW("ring", ring_record, "the frame as a part: a ring around its inner diameter"),
-    SECTION_ROW("holder", holder_record, "what holds the fibres until they are bonded"),
-    MARKS_ROW,
-    CURE_ROW,
-    SECTION_ROW("tolerance", tolerance_record, "tolerances of the check list"),
+    CUT_ROWS,
+    SECTION_ROW("blank", blank_fields, "film as it is cut"),
+    SECTION_ROW("leads", leads_fields, "leads of the electrodes, with a pad on the ring"),
+    SECTION_ROW("ring", ring_fields, "the frame as a part: a ring around its inner diameter"),
+    SECTION_ROW("holder", holder_fields, "what holds the fibres until they are bonded"),
+    PRINT_ROWS,
+    SECTION_ROW("tolerance", tolerance_fields, "tolerances of the check list"),
 };
 
-const struct dea_record dea_fabrication_record = {"fabrication", "what the workshop needs", fields,
-                                                  COUNT(fields)};
+const struct dea_record dea_fabrication_record = {.fields = fields, .field_count = COUNT(fields)};
 
 static const struct dea_field general_fields[] = {
-    KERF_ROW,
-    FEATURE_ROW,
-    COPIES_ROW,
-    SHEET_ROW,
-    SECTION_ROW("blank", blank_record, "film as it is cut, where a frame holds it"),
-    SECTION_ROW("frame", frame_record,
+    CUT_ROWS,
+    SECTION_ROW("blank", blank_fields, "film as it is cut, where a frame holds it"),
+    SECTION_ROW("frame", frame_fields,
                 "the plate that holds a stretched film, or an edge that is a support"),
-    MARKS_ROW,
-    CURE_ROW,
-    SECTION_ROW("leads", general_leads_record,
-                "leads of the electrodes that have one (`lead`), with a pad on the frame"),
+    PRINT_ROWS,
+    SHORT_ROW("leads", leads_fields,
+              "leads of the electrodes that have one (`lead`), with a pad on the frame"),
     {.key = "ring", .elsewhere = "the frame's width is 'frame: {width: ...}' here"},
     {.key = "holder", .elsewhere = "parts lie on a carrier here, which needs no holder"},
-    SECTION_ROW("tolerance", general_tolerance_record, "tolerances of the check list"),
+    SHORT_ROW("tolerance", tolerance_fields, "tolerances of the check list"),
 };
 
-const struct dea_record dea_fabrication_general_record = {"fabrication", "what the workshop needs",
-                                                          general_fields, COUNT(general_fields)};
+const struct dea_record dea_fabrication_general_record = {.fields = general_fields,
+                                                          .field_count = COUNT(general_fields)};

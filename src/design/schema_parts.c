@@ -6,28 +6,18 @@
 #include <stddef.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define RAW(member) offsetof(struct dea_design_raw, parts.member)
+#define RAW(member) offsetof(struct dea_design_raw, member)
 
 /* Rows of the tables below; `type` is the struct of an item. */
 #define NAME(type, member, word, text, sample, ...)                                                \
-  {                                                                                                \
-    .key = word, .kind = DEA_FIELD_LABEL, .offset = offsetof(struct type, member), .doc = text,    \
-    .example = sample, __VA_ARGS__                                                                 \
-  }
+  DEA_LABEL_ROW(word, offsetof(struct type, member), sample, text, __VA_ARGS__)
 #define NUMBER(type, member, word, si_unit, text, sample, ...)                                     \
-  {                                                                                                \
-    .key = word, .kind = DEA_FIELD_NUMBER, .offset = offsetof(struct type, member),                \
-    .unit = si_unit, .doc = text, .example = sample, __VA_ARGS__                                   \
-  }
+  DEA_NUMBER_ROW(word, offsetof(struct type, member), si_unit, sample, text, __VA_ARGS__)
 #define CHOICE(type, member, word, words, text, sample, ...)                                       \
-  {                                                                                                \
-    .key = word, .kind = DEA_FIELD_CHOICE, .offset = offsetof(struct type, member),                \
-    .choices = words, .doc = text, .example = sample, __VA_ARGS__                                  \
-  }
+  DEA_CHOICE_ROW(word, offsetof(struct type, member), words, sample, text, __VA_ARGS__)
 /* A list in an item, with its number in `counter`. */
 #define LIST(type, item, counter, least, most)                                                     \
-  .list_min = (least), .list_max = (most), .element_size = sizeof(struct item),                    \
-  .count_offset = offsetof(struct type, counter)
+  DEA_LIST(least, most, struct item, offsetof(struct type, counter))
 #define REQUIRED .required = true
 #define OPTIONAL .required = false
 #define POINT(type, member, word, text, number, ...)                                               \
@@ -231,25 +221,10 @@ static const struct dea_field monitor_fields[] = {
          .absent_text = "the uppermost one there"),
 };
 
-#define RECORD(id, text)                                                                           \
-  static const struct dea_record id##_record = {#id, text, id##_fields, COUNT(id##_fields)}
-RECORD(ply, "a sheet of one material");
-RECORD(electrode, "an electrode without thickness on a face of a ply");
-RECORD(channel, "what electrodes are connected to");
-RECORD(support, "what is held");
-RECORD(body, "what moves as one");
-RECORD(spring, "a spring from a body to the outside");
-RECORD(pressure, "pressure on a face of a ply");
-RECORD(contact, "a face of a ply that may touch something");
-RECORD(monitor, "what results are reported of");
-
 /* The list `word` of items of one table. */
 #define ITEMS(word, id, items, most, text, ...)                                                    \
-  {                                                                                                \
-    .key = word, .kind = DEA_FIELD_RECORD, .offset = RAW(items), .record = &id##_record,           \
-    .list_min = 1, .list_max = (most), .element_size = sizeof(struct dea_parts_##id),              \
-    .count_offset = RAW(id##_count), .doc = text, __VA_ARGS__                                      \
-  }
+  DEA_FIELD_ROW(RECORD, word, RAW(parts.items), .record = DEA_ROWS(id##_fields), .doc = text,      \
+                DEA_OWN_LIST(1, most, struct dea_parts_##id, RAW(parts.id##_count)), __VA_ARGS__)
 #define NO_ITEMS .absent_text = "none"
 
 const struct dea_field dea_parts_fields[] = {

@@ -4,22 +4,6 @@
 #include "base/schema.h"
 #include "design/parts.h"
 
-/* The parts as the tables read them. */
-struct dea_parts_raw {
-  const struct dea_node *shapes[DEA_PARTS_SHAPES_MAX]; // of several kinds: dea_parts_read
-  struct dea_parts_ply plies[DEA_PARTS_PLIES_MAX];
-  struct dea_parts_electrode electrodes[DEA_PARTS_ELECTRODES_MAX];
-  struct dea_parts_channel channels[DEA_PARTS_CHANNELS_MAX];
-  struct dea_parts_support supports[DEA_PARTS_SUPPORTS_MAX];
-  struct dea_parts_body bodies[DEA_PARTS_BODIES_MAX];
-  struct dea_parts_spring springs[DEA_PARTS_SPRINGS_MAX];
-  struct dea_parts_pressure pressures[DEA_PARTS_PRESSURES_MAX];
-  struct dea_parts_contact contacts[DEA_PARTS_CONTACTS_MAX];
-  struct dea_parts_monitor monitors[DEA_PARTS_MONITORS_MAX];
-  size_t shape_count, ply_count, electrode_count, channel_count, support_count, body_count;
-  size_t spring_count, pressure_count, contact_count, monitor_count;
-};
-
 /* A kind of shape: those of the geometry, whose tables are made of its parameters, and those that
  * are made of other shapes. */
 enum { DEA_SHAPE_KINDS_MAX = 24, DEA_SHAPE_FIELDS_MAX = DEA_SHAPE_PARAMETERS_MAX + 3 };
@@ -39,8 +23,13 @@ void dea_shape_schema_fill(struct dea_shape_schema *out);
 extern const struct dea_field dea_parts_fields[];
 extern const size_t dea_parts_field_count;
 
-/* Makes the lists of what was read, with the shapes, points, tables and waveforms; beside: the
- * design file, from whose folder paths count. out: owned by the caller, also after a failure. */
+/* Completes the lists that the tables have filled by the shapes [count], whose keys go with their
+ * kinds (NULL: was no section), points, tables and waveforms; beside: the design file, from whose
+ * folder paths count. */
 dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shape_schema *schema,
-                          const char *beside, const struct dea_parts_raw *raw,
-                          struct dea_parts **out);
+                          const char *beside, const struct dea_node *const *shapes, size_t count,
+                          struct dea_parts *parts);
+/* Each name that is taken by one before it is a finding. what: "ply". items: [count] of that size,
+ * with a struct dea_label at offset. */
+dea_status dea_check_names(struct dea_context *ctx, const char *what, const void *items,
+                           size_t count, size_t size, size_t offset);

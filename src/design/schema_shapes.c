@@ -12,21 +12,12 @@ static const struct dea_field kind_field =
     DEA_LABEL_ROW("kind", AT(kind), "circle", "kind of shape", .required = true);
 
 #define OF(least, most, text, sample)                                                              \
-  {                                                                                                \
-    .key = "of", .kind = DEA_FIELD_TEXT, .offset = AT(of), .required = true, .lone = true,         \
-    .list_min = (least), .list_max = (most), .element_size = sizeof(const char *),                 \
-    .count_offset = AT(of_count), .doc = text, .example = sample                                   \
-  }
+  DEA_FIELD_ROW(TEXT, "of", AT(of), .required = true, .lone = true, .doc = text,                   \
+                .example = sample, DEA_LIST(least, most, const char *, AT(of_count)))
 #define NUMBER(member, word, si_unit, text, sample, ...)                                           \
-  {                                                                                                \
-    .key = word, .kind = DEA_FIELD_NUMBER, .offset = AT(member), .unit = si_unit, .doc = text,     \
-    .example = sample, __VA_ARGS__                                                                 \
-  }
+  DEA_NUMBER_ROW(word, AT(member), si_unit, sample, text, __VA_ARGS__)
 #define WHOLE(member, word, text, sample, ...)                                                     \
-  {                                                                                                \
-    .key = word, .kind = DEA_FIELD_INTEGER, .offset = AT(member), .unit = "1", .min = 1,           \
-    .max = 1000, .doc = text, .example = sample, __VA_ARGS__                                       \
-  }
+  DEA_INTEGER_ROW(word, AT(member), sample, text, .min = 1, .max = 1000, __VA_ARGS__)
 
 static const struct dea_field union_fields[] = {
     OF(1, DEA_PARTS_OF_MAX, "shapes that become one", "[left, right]")};

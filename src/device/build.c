@@ -20,11 +20,7 @@ dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *de
   *out = NULL;
   struct dea_device *device = dea_alloc(ctx, 1, sizeof *device);
   DEA_TRY_MEMORY(device != NULL);
-  dea_status status = fill(ctx, design, device);
-  if (status != DEA_OK) {
-    dea_device_destroy(ctx, device);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, fill(ctx, design, device), dea_device_destroy(ctx, device));
   *out = device;
   return DEA_OK;
 }

@@ -278,10 +278,9 @@ static dea_status read_design(struct dea_case_key *case_key)
 dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *label,
                                const char *what, const char *const names[], size_t count)
 {
-  const char *nearest = dea_nearest_name(label->text, names, count);
-  return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s' is no %s%s%s%s", label->text,
-                         what, nearest != NULL ? "; did you mean '" : "",
-                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+  char hint[DEA_HINT_SIZE];
+  return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s' is no %s%s", label->text, what,
+                         dea_name_hint(label->text, names, count, hint));
 }
 
 static dea_status no_quantity(struct dea_context *ctx, const struct dea_label *label)

@@ -44,8 +44,6 @@ static const struct dea_field variable_fields[] = {
                   "design's own value is meant",
                   .absent_text = "none"),
 };
-static const struct dea_record variable_record = {"variable", "a number of the design that changes",
-                                                  variable_fields, COUNT(variable_fields)};
 
 static const struct dea_field limit_fields[] = {
     DEA_LABEL_ROW("quantity", LIMIT_AT(quantity), "breakdown_margin", "key of the quantity",
@@ -55,9 +53,6 @@ static const struct dea_field limit_fields[] = {
     DEA_LABEL_ROW("below", LIMIT_AT(below), "80 V/um", "it has to stay below this",
                   .absent_text = "none"),
 };
-static const struct dea_record limit_record = {"limit",
-                                               "what a quantity may not cross at the last voltage",
-                                               limit_fields, COUNT(limit_fields)};
 
 static const char *const goals[] = {"most", "least", NULL};
 static const char *const gradients[] = {"model", "differences", NULL};
@@ -70,8 +65,6 @@ static const struct dea_field objective_fields[] = {
                    "whether as much of it is wanted as can be, or as little",
                    .default_text = "most"),
 };
-static const struct dea_record objective_record = {"objective", "what is wanted", objective_fields,
-                                                   COUNT(objective_fields)};
 
 static const struct dea_field robust_fields[] = {
     DEA_INTEGER_ROW("samples", offsetof(struct dea_explore_robust, samples), "32",
@@ -86,9 +79,6 @@ static const struct dea_field robust_fields[] = {
                    "each objective and limit by itself; 1: the worst of them",
                    .max = 1, .absent_text = "mean and spread"),
 };
-static const struct dea_record robust_record = {
-    "robust", "an optimisation of designs as the workshop makes them", robust_fields,
-    COUNT(robust_fields)};
 
 static const struct dea_field file_fields[] = {
     DEA_INTEGER_ROW("dea_explore", DEA_FIT_HEAD_AT(version), "1", "version of the format",
@@ -116,7 +106,7 @@ static const struct dea_field file_fields[] = {
                   DEA_LIST(1, DEA_EXPLORE_QUANTITIES_MAX, struct dea_label, AT(quantity_count)),
                   .required = true),
     DEA_FIELD_ROW(
-        RECORD, "variables", AT(variables), .record = &variable_record,
+        RECORD, "variables", AT(variables), .record = DEA_ROWS(variable_fields),
         .absent_text = "those of from_fit", .doc = "numbers of the design that change",
         .example = "[{name: film.thickness, values: [80 um, 100 um]}]",
         DEA_LIST(1, DEA_DEVICE_PARAMS_MAX, struct dea_explore_variable, AT(variable_count))),
@@ -153,12 +143,12 @@ static const struct dea_field file_fields[] = {
                    "takes a third of the time, or the film at rest",
                    .default_text = "nearest"),
     DEA_FIELD_ROW(
-        RECORD, "limits", AT(limits), .record = &limit_record,
+        RECORD, "limits", AT(limits), .record = DEA_ROWS(limit_fields),
         .doc = "what may not be crossed: a probability of samples, a constraint of an optimisation",
         .absent_text = "none", .example = "[{quantity: breakdown_margin, above: 0.1}]",
         DEA_LIST(1, DEA_EXPLORE_LIMITS_MAX, struct dea_explore_limit, AT(limit_count))),
     DEA_FIELD_ROW(
-        RECORD, "objectives", AT(objectives), .record = &objective_record,
+        RECORD, "objectives", AT(objectives), .record = DEA_ROWS(objective_fields),
         .doc = "of dea optimise: what is wanted; of two the front between them",
         .absent_text = "none", .example = "[{quantity: centre_z_m, goal: most}]",
         DEA_LIST(1, DEA_EXPLORE_OBJECTIVES_MAX, struct dea_explore_objective, AT(objective_count))),
@@ -180,7 +170,7 @@ static const struct dea_field file_fields[] = {
                    .min = 1e-12, .max = 0.1, .default_text = "1e-5"),
     DEA_INTEGER_ROW("front", AT(front), "11", "points of the front of two objectives", .min = 2,
                     .max = DEA_EXPLORE_FRONT_MAX, .default_text = "7"),
-    DEA_FIELD_ROW(RECORD, "robust", AT(robust), .record = &robust_record,
+    DEA_FIELD_ROW(RECORD, "robust", AT(robust), .record = DEA_ROWS(robust_fields),
                   .doc = "of dea optimise, where variables have a scatter: what counts of the "
                          "scattered designs"),
 };

@@ -346,10 +346,7 @@ dea_status dea_store_open(struct dea_context *ctx, const char *folder, const cha
   dea_status status = grow(store);
   status = status == DEA_OK ? open_all(store, folder, shard) : status;
   dea_c_locale_leave(before);
-  if (status != DEA_OK) {
-    dea_store_close(store);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_store_close(store));
   *out = store;
   return DEA_OK;
 }

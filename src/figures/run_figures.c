@@ -45,17 +45,9 @@ static dea_status check_names(struct dea_context *ctx, const struct dea_figure_o
       known = known || strcmp(names[f], options->names[i]) == 0;
     }
     if (!known) {
-      const char *nearest = dea_nearest_name(options->names[i], names, count);
-      struct dea_text all = {.ctx = ctx};
-      for (size_t f = 0; nearest == NULL && f < count; f++) {
-        dea_text_add(&all, "%s%s", f > 0 ? ", " : "", names[f]);
-      }
-      dea_status status =
-          dea_fail(ctx, DEA_E_ARGUMENT, "there is no figure '%s'; %s%s%s", options->names[i],
-                   nearest != NULL ? "did you mean '" : "there are ",
-                   nearest != NULL ? nearest : dea_text_get(&all), nearest != NULL ? "'?" : "");
-      dea_text_free(&all);
-      return status;
+      char hint[DEA_HINT_SIZE];
+      dea_name_hint_list(options->names[i], names, count, NULL, "; there are ", hint);
+      return dea_fail(ctx, DEA_E_ARGUMENT, "there is no figure '%s'%s", options->names[i], hint);
     }
   }
   return DEA_OK;

@@ -33,8 +33,6 @@ static const struct dea_field curve_fields[] = {
                   "the share as squares",
                   .absent_text = "the columns std, or from the scatter"),
 };
-static const struct dea_record curve_record = {"curve", "measured curves of the device",
-                                               curve_fields, COUNT(curve_fields)};
 
 static const struct dea_field parameter_fields[] = {
     DEA_LABEL_ROW("name", offsetof(struct dea_fit_parameter_text, name), "film.thickness",
@@ -49,8 +47,6 @@ static const struct dea_field parameter_fields[] = {
                             "none, or the material's"),
     DEA_FIT_FIXED_FIELD,
 };
-static const struct dea_record parameter_record = {"parameter", "a number of the design",
-                                                   parameter_fields, COUNT(parameter_fields)};
 
 static const struct dea_field file_fields[] = {
     DEA_FIT_HEAD_FIELDS("name of the design that is written", "sample-3", "the design's",
@@ -63,11 +59,11 @@ static const struct dea_field file_fields[] = {
         "model that computes the curves; of 3d the design's compute.solid says which film",
         .required = true),
     DEA_FIELD_ROW(
-        RECORD, "parameters", AT(parameters), .record = &parameter_record, .required = true,
-        .doc = "numbers of the design that are fitted",
+        RECORD, "parameters", AT(parameters), .record = DEA_ROWS(parameter_fields),
+        .required = true, .doc = "numbers of the design that are fitted",
         .example = "[{name: pre_stretch, low: 1.2, high: 1.6}]",
         DEA_LIST(1, DEA_DEVICE_PARAMS_MAX, struct dea_fit_parameter_text, AT(parameter_count))),
-    DEA_FIELD_ROW(RECORD, "curves", AT(curves), .record = &curve_record, .required = true,
+    DEA_FIELD_ROW(RECORD, "curves", AT(curves), .record = DEA_ROWS(curve_fields), .required = true,
                   .doc = "measurements of the device",
                   .example = "[{name: strain, file: strain.csv}]",
                   DEA_LIST(1, DEA_DEVICE_FILES_MAX, struct dea_device_curve_text, AT(curve_count))),

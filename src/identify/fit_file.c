@@ -44,8 +44,6 @@ static const struct dea_field column_fields[] = {
     COLUMN_FIELD(DEA_FIT_STRESS_STD, "stress_std", "standard uncertainty of the stress"),
     COLUMN_FIELD(DEA_FIT_FORCE_STD, "force_std", "standard uncertainty of the force"),
 };
-static const struct dea_record column_record = {
-    "columns", "titles of the columns, without their units", column_fields, COUNT(column_fields)};
 
 static const struct dea_field test_fields[] = {
     DEA_LABEL_ROW("name", TEST_AT(name), "tension to 3", "name of the test", .required = true),
@@ -60,7 +58,7 @@ static const struct dea_field test_fields[] = {
     DEA_CHOICE_ROW("use", TEST_AT(use), dea_fit_use_names, "check",
                    "fit: fitted; check: only compared; predict: no stress is needed",
                    .default_text = "fit"),
-    DEA_FIELD_ROW(RECORD, "columns", TEST_AT(columns), .record = &column_record,
+    DEA_FIELD_ROW(RECORD, "columns", TEST_AT(columns), .record = DEA_ROWS(column_fields),
                   .doc = "titles of the columns where they are others"),
     DEA_NUMBER_ROW("length", TEST_AT(length_m), "m", "80 mm",
                    "unstretched length between the clamps, with a column of displacements",
@@ -86,8 +84,6 @@ static const struct dea_field test_fields[] = {
                    "temperature of this test", .min = 100, .max = 600,
                    .absent_text = "that of the file"),
 };
-static const struct dea_record test_record = {"test", "a test of the material", test_fields,
-                                              COUNT(test_fields)};
 
 static const struct dea_field parameter_fields[] = {
     DEA_LABEL_ROW("name", offsetof(struct dea_fit_parameter_text, name), "c1",
@@ -99,8 +95,6 @@ static const struct dea_field parameter_fields[] = {
     DEA_FIT_PARAMETER_FIELD(prior_std, "standard uncertainty of the prior", "20 kPa", "none"),
     DEA_FIT_FIXED_FIELD,
 };
-static const struct dea_record parameter_record = {"parameter", "what is known of a parameter",
-                                                   parameter_fields, COUNT(parameter_fields)};
 
 static const struct dea_field fit_fields[] = {
     DEA_FIT_HEAD_FIELDS("name of the material that is written", "my-silicone", "none",
@@ -119,7 +113,7 @@ static const struct dea_field fit_fields[] = {
                   "NAME-N: its first N terms",
                   .required = true, DEA_LIST(1, DEA_FIT_LAWS_MAX, struct dea_label, AT(law_count))),
     DEA_FIELD_ROW(
-        RECORD, "parameters", AT(parameters), .record = &parameter_record,
+        RECORD, "parameters", AT(parameters), .record = DEA_ROWS(parameter_fields),
         .absent_text = "all free",
         .doc = "what is known of parameters; those that are not named are free",
         .example = "[{name: c1, low: 1 kPa}]",
@@ -132,7 +126,7 @@ static const struct dea_field fit_fields[] = {
                    "fixed relaxation times, a branch each", .above_min = true, .max = 1e12,
                    .list_max = DEA_BRANCHES_MAX, .element_size = sizeof(struct dea_quantity),
                    .count_offset = AT(branch_time_count), .absent_text = "free"),
-    DEA_FIELD_ROW(RECORD, "tests", AT(tests), .record = &test_record, .required = true,
+    DEA_FIELD_ROW(RECORD, "tests", AT(tests), .record = DEA_ROWS(test_fields), .required = true,
                   .doc = "measurements of the material",
                   .example = "[{name: tension, kind: uniaxial, file: tension.csv}]",
                   DEA_LIST(1, DEA_FIT_TESTS_MAX, struct dea_fit_test, AT(test_count))),

@@ -154,11 +154,10 @@ static dea_status read_texts(struct dea_context *ctx, const struct dea_fit_file 
       DEA_TRY(ctx, dea_fit_param_read(ctx, text, &model->params[j]));
       continue;
     }
-    const char *nearest = dea_nearest_name(text->name.text, names, j);
+    char hint[DEA_HINT_SIZE];
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, text->name.location,
-                                 "the law %s has no parameter '%.60s'%s%s%s", model->law->name,
-                                 text->name.text, nearest != NULL ? "; did you mean '" : "",
-                                 nearest != NULL ? nearest : "", nearest != NULL ? "'?" : ""));
+                                 "the law %s has no parameter '%.60s'%s", model->law->name,
+                                 text->name.text, dea_name_hint(text->name.text, names, j, hint)));
   }
   return DEA_OK;
 }
@@ -204,16 +203,15 @@ static dea_status unknown_law(struct dea_context *ctx, const struct dea_label *n
       names[named++] = laws[i]->name;
     }
   }
-  const char *nearest = dea_nearest_name(name->text, names, named);
+  char hint[DEA_HINT_SIZE];
   return law != NULL ? dea_finding_add(ctx, DEA_ERROR, name->location,
                                        "'%.60s' is no law of a film without a direction, which is "
                                        "what is fitted",
                                        name->text)
                      : dea_finding_add(ctx, DEA_ERROR, name->location,
-                                       "'%.60s' is not a law%s%s%s; dea schema --material and "
+                                       "'%.60s' is not a law%s; dea schema --material and "
                                        "docs/theory/materials.md list them",
-                                       name->text, nearest != NULL ? "; did you mean '" : "",
-                                       nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+                                       name->text, dea_name_hint(name->text, names, named, hint));
 }
 
 dea_status dea_fit_model_create(struct dea_context *ctx, const struct dea_fit_file *file,

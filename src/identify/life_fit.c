@@ -37,14 +37,12 @@ static const struct dea_field specimen_fields[] = {
                    "specimen failed at their end where no criterion says so",
                    .default_text = "no"),
 };
-static const struct dea_record specimen_record = {"specimen", "a specimen that was cycled",
-                                                  specimen_fields, COUNT(specimen_fields)};
 
 static const struct dea_field fields[] = {
     DEA_FIT_HEAD_FIELDS("name of what is fitted", "batch-7", "none", "what was cycled",
                         "discs of batch 7 at 3 kV, 10 Hz"),
     DEA_FIELD_ROW(
-        RECORD, "life", AT(specimens), .record = &specimen_record, .required = true,
+        RECORD, "life", AT(specimens), .record = DEA_ROWS(specimen_fields), .required = true,
         .doc = "the specimens, those that survived too",
         .example = "[{name: F12, reduced: F12.reduced}, {name: F13, life: 120000, failed: yes}]",
         DEA_LIST(1, DEA_LIFE_SPECIMENS_MAX, struct dea_life_specimen, AT(specimen_count))),

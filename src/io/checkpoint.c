@@ -33,9 +33,9 @@ static void state_name(const char *model, char out[NAME_SIZE])
 void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const char *model,
                            size_t count)
 {
-  char name[NAME_SIZE];
-  char *folder = dea_path_join(ctx, directory, DEA_FIELD_FOLDER);
-  bool fields = folder != NULL && dea_path_exists(folder);
+  char name[NAME_SIZE], folder[DEA_PATH_SIZE];
+  bool fields =
+      dea_path_build(ctx, directory, DEA_FIELD_FOLDER, folder) == DEA_OK && dea_path_exists(folder);
   for (size_t i = 0; i < count && fields; i++) {
     field_name(model, i, name);
     dea_path_forget(ctx, directory, name);
@@ -47,38 +47,28 @@ void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const
   if (fields) {
     rmdir(folder); // when nothing else is in it
   }
-  dea_free(ctx, folder);
 }
 
 // Fields -----------------------------------------------------------------------------------------
-
-static bool is_there(struct dea_context *ctx, const char *directory, const char *name)
-{
-  char *path = dea_path_join(ctx, directory, name);
-  const bool there = path != NULL && dea_path_exists(path);
-  dea_free(ctx, path);
-  return there;
-}
 
 /* Lines up the files that are there. */
 static dea_status write_pvd(struct dea_context *ctx, const char *directory, const char *model,
                             const struct dea_curve *curve)
 {
-  char name[NAME_SIZE];
+  char name[NAME_SIZE], path[DEA_PATH_SIZE];
   size_t count = 0;
   struct dea_pvd_entry *entries = dea_alloc(ctx, curve->count, sizeof *entries);
-  for (size_t i = 0; i < curve->count && entries != NULL; i++) {
+  DEA_TRY_MEMORY(entries != NULL);
+  for (size_t i = 0; i < curve->count; i++) {
     field_name(model, i, name);
-    if (is_there(ctx, directory, name)) {
+    if (dea_path_build(ctx, directory, name, path) == DEA_OK && dea_path_exists(path)) {
       entries[count].voltage_V = curve->points[i].voltage_V;
       snprintf(entries[count++].file, sizeof entries[0].file, "%.79s", name);
     }
   }
   pvd_name(model, name);
-  char *path = dea_path_join(ctx, directory, name);
-  const bool no_memory = entries == NULL || path == NULL || dea_context_status(ctx) == DEA_E_MEMORY;
-  const dea_status status = no_memory ? DEA_E_MEMORY : dea_pvd_write(ctx, entries, count, path);
-  dea_free(ctx, path);
+  dea_status status = dea_path_build(ctx, directory, name, path);
+  status = status == DEA_OK ? dea_pvd_write(ctx, entries, count, path) : status;
   dea_free(ctx, entries);
   return status;
 }
@@ -86,14 +76,11 @@ static dea_status write_pvd(struct dea_context *ctx, const char *directory, cons
 static dea_status write_vtu(struct dea_context *ctx, const char *directory, const char *name,
                             const struct dea_field_mesh *mesh, double voltage_V, bool whole)
 {
-  char *folder = dea_path_join(ctx, directory, DEA_FIELD_FOLDER);
-  char *path = dea_path_join(ctx, directory, name);
-  dea_status status =
-      folder != NULL && path != NULL ? dea_folder_create(ctx, folder) : DEA_E_MEMORY;
-  status = status == DEA_OK ? dea_vtu_write(ctx, mesh, voltage_V, whole, path) : status;
-  dea_free(ctx, folder);
-  dea_free(ctx, path);
-  return status;
+  char folder[DEA_PATH_SIZE], path[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, directory, DEA_FIELD_FOLDER, folder));
+  DEA_TRY(ctx, dea_path_build(ctx, directory, name, path));
+  DEA_TRY(ctx, dea_folder_create(ctx, folder));
+  return DEA_CHAIN(ctx, dea_vtu_write(ctx, mesh, voltage_V, whole, path));
 }
 
 /* Fields of the last point of a curve. Those of the point before go when only the last is wanted:
@@ -132,22 +119,21 @@ dea_status dea_checkpoint_shapes(struct dea_context *ctx, const struct dea_resul
 
 // Keeper -----------------------------------------------------------------------------------------
 
-static char *state_path(struct dea_context *ctx, const char *directory, const char *model)
+static dea_status state_path(struct dea_context *ctx, const char *directory, const char *model,
+                             char out[DEA_PATH_SIZE])
 {
   char name[NAME_SIZE];
   state_name(model, name);
-  return dea_path_join(ctx, directory, name);
+  return dea_path_build(ctx, directory, name, out);
 }
 
 static dea_status restore(struct dea_context *ctx, void *user, const char *model,
                           const struct dea_state *wanted, struct dea_state *out)
 {
   const struct dea_keep *keep = user;
-  char *path = state_path(ctx, keep->directory, model);
-  DEA_TRY_MEMORY(path != NULL);
-  dea_status status = dea_state_file_read(ctx, model, wanted, path, out);
-  dea_free(ctx, path);
-  return status;
+  char path[DEA_PATH_SIZE];
+  DEA_TRY(ctx, state_path(ctx, keep->directory, model, path));
+  return DEA_CHAIN(ctx, dea_state_file_read(ctx, model, wanted, path, out));
 }
 
 static void refuse(void *user)
@@ -166,17 +152,12 @@ static dea_status keep_point(struct dea_context *ctx, void *user, const struct d
   if (state == NULL) {
     return DEA_OK;
   }
-  char *store = dea_path_join(ctx, keep->directory, "results.h5");
-  char *path = state_path(ctx, keep->directory, curve->model);
-  dea_status status = store != NULL && path != NULL ? DEA_OK : DEA_E_MEMORY;
-  status = status == DEA_OK ? dea_results_h5_write(ctx, result, store) : status;
-  if (status == DEA_OK) {
-    const struct dea_state_reach reach = {curve->count, curve->event_count};
-    status = dea_state_file_write(ctx, curve->model, state, reach, path);
-  }
-  dea_free(ctx, store);
-  dea_free(ctx, path);
-  return status;
+  char path[DEA_PATH_SIZE];
+  const struct dea_state_reach reach = {curve->count, curve->event_count};
+  DEA_TRY(ctx, dea_path_build(ctx, keep->directory, "results.h5", path));
+  DEA_TRY(ctx, dea_results_h5_write(ctx, result, path));
+  DEA_TRY(ctx, state_path(ctx, keep->directory, curve->model, path));
+  return DEA_CHAIN(ctx, dea_state_file_write(ctx, curve->model, state, reach, path));
 }
 
 void dea_checkpoint_begin(struct dea_keep *keep, const char *directory)
@@ -288,14 +269,12 @@ dea_status dea_checkpoint_restore(struct dea_context *ctx, const char *directory
   dea_status status = DEA_OK;
   for (size_t i = 0; i < old->result->curve_count && status == DEA_OK; i++) {
     const struct dea_curve *curve = &old->result->curves[i];
-    char *path = state_path(ctx, directory, curve->model);
-    if (path == NULL) {
-      status = DEA_E_MEMORY;
-    } else if (strcmp(curve->kind, "sweep") == 0 && dea_path_exists(path)) {
+    char path[DEA_PATH_SIZE];
+    status = state_path(ctx, directory, curve->model, path);
+    if (status == DEA_OK && strcmp(curve->kind, "sweep") == 0 && dea_path_exists(path)) {
       any = true;
       status = read_sweep(ctx, directory, path, old->result, curve, result);
     }
-    dea_free(ctx, path);
   }
   dea_run_destroy(ctx, old);
   if (status == DEA_OK && !any) {

@@ -45,7 +45,7 @@ static dea_status begin_sheet(struct dea_context *ctx, struct sheet *out)
 static dea_status end_sheet(struct sheet *s, const char *directory, const char *model,
                             const char *kind, const char *what)
 {
-  char name[2 * DEA_NAME_SIZE + 16];
+  char name[3 * DEA_NAME_SIZE + 8];
   snprintf(name, sizeof name, "%s%s%s%s%s.csv", model, kind[0] != '\0' ? "_" : "", kind,
            what[0] != '\0' ? "_" : "", what);
   dea_c_locale_leave(s->locale);
@@ -296,21 +296,17 @@ static void add_table_row(struct dea_text *text, const struct dea_result_table *
 static dea_status write_table(struct dea_context *ctx, const struct dea_result_table *table,
                               const char *directory)
 {
-  struct dea_text text = {.ctx = ctx};
-  char name[DEA_RESULT_TABLE_FILE_SIZE];
+  struct sheet s;
   if ((table->type.where & DEA_IN_CSV) == 0) {
     return DEA_OK;
   }
-  void *before = dea_c_locale_enter();
-  add_table_row(&text, table, SIZE_MAX);
+  DEA_TRY(ctx, begin_sheet(ctx, &s));
+  s.any = true;
+  add_table_row(&s.text, table, SIZE_MAX);
   for (size_t row = 0; row < table->row_count; row++) {
-    add_table_row(&text, table, row);
+    add_table_row(&s.text, table, row);
   }
-  dea_c_locale_leave(before);
-  dea_csv_table_name(table, name);
-  dea_status status = dea_text_write(ctx, &text, directory, name);
-  dea_text_free(&text);
-  return status;
+  return end_sheet(&s, directory, table->model, table->type.study, table->type.name);
 }
 
 void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESULT_TABLE_FILE_SIZE])

@@ -756,20 +756,17 @@ dea_status dea_run_read(struct dea_context *ctx, const char *path, struct dea_ru
   if (!dea_path_exists(path)) {
     return dea_fail(ctx, DEA_E_IO, "%s does not exist", path);
   }
-  char *file = dea_path_is_folder(path) ? dea_path_join(ctx, path, "results.h5")
-                                        : dea_copy_text(ctx, path, SIZE_MAX);
-  struct dea_run *run = file != NULL ? dea_alloc(ctx, 1, sizeof *run) : NULL;
-  dea_status status = run != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK && !dea_path_exists(file)) {
-    status = dea_fail(ctx, DEA_E_IO, "%s is not a run folder: it has no results.h5", path);
+  char inside[DEA_PATH_SIZE];
+  const bool folder = dea_path_is_folder(path);
+  DEA_TRY(ctx, folder ? dea_path_build(ctx, path, "results.h5", inside) : DEA_OK);
+  if (folder && !dea_path_exists(inside)) {
+    return dea_fail(ctx, DEA_E_IO, "%s is not a run folder: it has no results.h5", path);
   }
-  status = status == DEA_OK ? dea_result_create(ctx, NULL, NULL, &run->result) : status;
-  status = status == DEA_OK ? read_file(ctx, file, run) : status;
-  dea_free(ctx, file);
-  if (status != DEA_OK) {
-    dea_run_destroy(ctx, run);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  struct dea_run *run = dea_alloc(ctx, 1, sizeof *run);
+  DEA_TRY_MEMORY(run != NULL);
+  dea_status status = dea_result_create(ctx, NULL, NULL, &run->result);
+  status = status == DEA_OK ? read_file(ctx, folder ? inside : path, run) : status;
+  DEA_TRY_ELSE(ctx, status, dea_run_destroy(ctx, run));
   *out = run;
   return DEA_OK;
 }

@@ -1,10 +1,10 @@
 #include "io/vtu.h"
 
-#include "base/bytes.h"
 #include "base/version.h"
 #include "base/write_file.h"
 #include "result/field_mesh.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -74,46 +74,26 @@ static size_t cells_of(const struct dea_mesh_block *block)
 /* Everything that is written. */
 struct grid {
   const struct dea_field_mesh *mesh;
-  size_t copies, points, cells, nodes; // of all copies; nodes: of all cells
+  size_t copies, cells,
+      nodes; // copies that each block holds one after the other; nodes of all cells
 };
 
-static void add_vectors(struct dea_bytes *out, const struct grid *grid, const double *values,
-                        bool doubles)
+static void add_number(struct dea_text *out, double value, bool in_double)
 {
-  for (size_t c = 0; c < grid->copies; c++) {
-    const struct dea_copy copy = dea_copy_at(grid->mesh, c);
-    for (size_t p = 0; p < grid->mesh->point_count; p++) {
-      double moved[3];
-      dea_copy_move(&copy, values + 3 * p, moved);
-      for (int i = 0; i < 3; i++) {
-        if (doubles) {
-          dea_bytes_add_f64(out, moved[i]);
-        } else {
-          dea_bytes_add_f32(out, (float)moved[i]);
-        }
-      }
-    }
-  }
+  const float single = (float)value;
+  dea_text_add_bytes(out, in_double ? (const void *)&value : &single,
+                     in_double ? sizeof value : sizeof single);
 }
 
-/* Values of points, or of cells, each as often as its element has pieces. */
-static void add_values(struct dea_bytes *out, const struct grid *grid,
-                       const struct dea_mesh_field *field)
+static void add_int(struct dea_text *out, int32_t value)
 {
-  const struct dea_field_mesh *mesh = grid->mesh;
-  size_t n = (size_t)field->components;
-  for (size_t c = 0; c < grid->copies; c++) {
-    for (size_t i = 0; i < mesh->point_count * n && !field->of_cells; i++) {
-      dea_bytes_add_f32(out, (float)field->values[i]);
-    }
-    const double *values = field->values;
-    for (size_t b = 0; b < mesh->block_count && field->of_cells; b++) {
-      for (size_t e = 0; e < mesh->blocks[b].count; e++, values += n) {
-        for (size_t k = 0; k < cells_of(&mesh->blocks[b]) * n; k++) {
-          dea_bytes_add_f32(out, (float)values[k % n]);
-        }
-      }
-    }
+  dea_text_add_bytes(out, &value, sizeof value);
+}
+
+static void add_points(struct dea_text *out, const double *values, size_t count, bool in_double)
+{
+  for (size_t i = 0; i < count; i++) {
+    add_number(out, values[i], in_double);
   }
 }
 
@@ -122,43 +102,48 @@ static bool is_double(const struct dea_mesh_field *field)
   return field->kind == DEA_MESH_VECTOR;
 }
 
-static void add_field(struct dea_bytes *out, const struct grid *grid,
+/* Values of points, or of cells, each as often as its element has pieces. */
+static void add_field(struct dea_text *out, const struct grid *grid,
                       const struct dea_mesh_field *field)
 {
-  if (field->kind == DEA_MESH_VALUES || field->of_cells) {
-    add_values(out, grid, field);
-  } else {
-    add_vectors(out, grid, field->values, is_double(field));
+  const struct dea_field_mesh *mesh = grid->mesh;
+  const size_t n = (size_t)field->components;
+  const double *values = field->values;
+  if (!field->of_cells) {
+    add_points(out, values, mesh->point_count * n, is_double(field));
+    return;
+  }
+  for (size_t b = 0; b < mesh->block_count; b++) {
+    for (size_t e = 0; e < mesh->blocks[b].count; e++, values += n) {
+      for (size_t k = 0; k < cells_of(&mesh->blocks[b]); k++) {
+        add_points(out, values, n, is_double(field));
+      }
+    }
   }
 }
 
-/* One cell of an element: the piece at [from]. In a mirrored copy the first axis is turned round,
- * so that the cell does not stand inside out. */
-static void add_cell(struct dea_bytes *out, const struct dea_mesh_block *block, const int *nodes,
-                     const int from[3], bool mirrored, size_t first_point)
+/* One cell of an element: the piece at [from]. */
+static void add_cell(struct dea_text *out, const struct dea_mesh_block *block, const int *nodes,
+                     const int from[3])
 {
   const struct cell_type *type = cell_type_of(block);
   int row = block->order + 1;
   for (int n = 0; n < type->nodes; n++) {
     int i = from[0] + type->at[n][0], j = from[1] + type->at[n][1], k = from[2] + type->at[n][2];
-    int node = nodes[(k * row + j) * row + (mirrored ? block->order - i : i)];
-    dea_bytes_add_i32(out, (int32_t)(first_point + (size_t)node));
+    add_int(out, nodes[(k * row + j) * row + i]);
   }
 }
 
-static void add_connectivity(struct dea_bytes *out, const struct grid *grid)
+static void add_connectivity(struct dea_text *out, const struct grid *grid)
 {
-  const struct dea_field_mesh *mesh = grid->mesh;
-  for (size_t c = 0; c < grid->copies; c++) {
-    for (size_t b = 0; b < mesh->block_count; b++) {
-      const struct dea_mesh_block *block = &mesh->blocks[b];
-      int n = pieces(block), nz = pieces_z(block), order = cell_type_of(block)->order;
-      for (size_t e = 0; e < block->count; e++) {
-        const int *nodes = block->nodes + e * (size_t)dea_mesh_block_nodes(block);
-        for (int k = 0; k < n * n * nz; k++) {
-          const int from[3] = {order * (k % n), order * (k / n % n), order * (k / (n * n))};
-          add_cell(out, block, nodes, from, c % 2 == 1, c * mesh->point_count);
-        }
+  for (size_t b = 0; b < grid->mesh->block_count; b++) {
+    const struct dea_mesh_block *block = &grid->mesh->blocks[b];
+    int n = pieces(block), nz = pieces_z(block), order = cell_type_of(block)->order;
+    for (size_t e = 0; e < block->count; e++) {
+      const int *nodes = block->nodes + e * (size_t)dea_mesh_block_nodes(block);
+      for (int k = 0; k < n * n * nz; k++) {
+        const int from[3] = {order * (k % n), order * (k / n % n), order * (k / (n * n))};
+        add_cell(out, block, nodes, from);
       }
     }
   }
@@ -168,19 +153,18 @@ static void add_connectivity(struct dea_bytes *out, const struct grid *grid)
  * copy that it is of. */
 enum cell_number { END, TYPE, COPY };
 
-static void add_cell_numbers(struct dea_bytes *out, const struct grid *grid, enum cell_number what)
+static void add_cell_numbers(struct dea_text *out, const struct grid *grid, enum cell_number what)
 {
   int32_t end = 0;
-  for (size_t c = 0; c < grid->copies; c++) {
-    for (size_t b = 0; b < grid->mesh->block_count; b++) {
-      const struct dea_mesh_block *block = &grid->mesh->blocks[b];
-      for (size_t k = 0; k < block->count * cells_of(block); k++) {
-        end += cell_type_of(block)->nodes;
-        if (what == TYPE) {
-          dea_bytes_add_u8(out, cell_type_of(block)->number);
-        } else {
-          dea_bytes_add_i32(out, what == END ? end : (int32_t)c);
-        }
+  for (size_t b = 0; b < grid->mesh->block_count; b++) {
+    const struct dea_mesh_block *block = &grid->mesh->blocks[b];
+    const size_t cells = block->count * cells_of(block), of_copy = cells / grid->copies;
+    for (size_t k = 0; k < cells; k++) {
+      end += cell_type_of(block)->nodes;
+      if (what == TYPE) {
+        dea_text_add_bytes(out, &cell_type_of(block)->number, 1);
+      } else {
+        add_int(out, what == END ? end : (int32_t)(k / of_copy));
       }
     }
   }
@@ -190,8 +174,7 @@ static void add_cell_numbers(struct dea_bytes *out, const struct grid *grid, enu
 
 /* Text in front, and how far the arrays behind it have come. */
 struct file {
-  struct dea_text head;
-  struct dea_bytes data;
+  struct dea_text head, data;
   size_t block; // where the size of the open array stands
 };
 
@@ -202,12 +185,15 @@ static void open_array(struct file *file, const char *type, const char *name, in
                "offset=\"%zu\"/>\n",
                type, name, components, file->data.length);
   file->block = file->data.length;
-  dea_bytes_add_u64(&file->data, 0);
+  dea_text_add_bytes(&file->data, &(uint64_t){0}, sizeof(uint64_t));
 }
 
 static void close_array(struct file *file)
 {
-  dea_bytes_set_u64(&file->data, file->block, file->data.length - file->block - 8);
+  const uint64_t size = file->data.length - file->block - sizeof size;
+  if (!file->data.failed) {
+    memcpy(file->data.data + file->block, &size, sizeof size);
+  }
 }
 
 static void add_fields(struct file *file, const struct grid *grid, bool of_cells)
@@ -234,7 +220,7 @@ static void add_cells(struct file *file, const struct grid *grid)
 {
   dea_text_add(&file->head, "<Points>\n");
   open_array(file, "Float64", "Points", 3);
-  add_vectors(&file->data, grid, grid->mesh->X, true);
+  add_points(&file->data, grid->mesh->X, 3 * grid->mesh->point_count, true);
   close_array(file);
   dea_text_add(&file->head, "</Points>\n<Cells>\n");
   open_array(file, "Int32", "connectivity", 1);
@@ -249,61 +235,64 @@ static void add_cells(struct file *file, const struct grid *grid)
   dea_text_add(&file->head, "</Cells>\n");
 }
 
+/* That of numbers in memory, as the files have them. */
+static const char *byte_order(void)
+{
+  const uint16_t one = 1;
+  unsigned char first;
+  memcpy(&first, &one, 1);
+  return first == 1 ? "LittleEndian" : "BigEndian";
+}
+
 static void build(struct file *file, const struct grid *grid, double voltage_V)
 {
-  dea_text_add(
-      &file->head,
-      "<?xml version=\"1.0\"?>\n<!-- dea %s; SI units; places in the stretched flat film "
-      "-->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n<DataArray "
-      "type=\"Float64\" Name=\"voltage_V\" NumberOfTuples=\"1\" format=\"ascii\">%.17g"
-      "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
-      DEA_VERSION, voltage_V, grid->points, grid->cells);
+  dea_text_add(&file->head,
+               "<?xml version=\"1.0\"?>\n<!-- dea %s; SI units; places in the stretched flat film "
+               "-->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"%s\" "
+               "header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n<DataArray "
+               "type=\"Float64\" Name=\"voltage_V\" NumberOfTuples=\"1\" format=\"ascii\">%.17g"
+               "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
+               DEA_VERSION, byte_order(), voltage_V, grid->mesh->point_count, grid->cells);
   add_fields(file, grid, false);
   add_fields(file, grid, true);
   add_cells(file, grid);
   dea_text_add(&file->head, "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
+  dea_text_add_bytes(&file->head, file->data.data, file->data.length);
+  dea_text_add(&file->head, "\n</AppendedData>\n</VTKFile>\n");
+  file->head.failed = file->head.failed || file->data.failed;
 }
 
-static dea_status count(struct dea_context *ctx, const struct dea_field_mesh *mesh, bool whole,
-                        struct grid *out)
+static dea_status write(struct dea_context *ctx, const struct dea_field_mesh *mesh, size_t copies,
+                        double voltage_V, const char *path)
 {
-  *out = (struct grid){.mesh = mesh, .copies = whole ? dea_copy_count(mesh) : 1};
+  struct grid grid = {.mesh = mesh, .copies = copies};
+  struct file file = {.head = {.ctx = ctx}, .data = {.ctx = ctx}};
   for (size_t b = 0; b < mesh->block_count; b++) {
-    const struct dea_mesh_block *block = &mesh->blocks[b];
-    size_t cells = block->count * cells_of(block) * out->copies;
-    out->cells += cells;
-    out->nodes += cells * (size_t)cell_type_of(block)->nodes;
+    const size_t cells = mesh->blocks[b].count * cells_of(&mesh->blocks[b]);
+    grid.cells += cells;
+    grid.nodes += cells * (size_t)cell_type_of(&mesh->blocks[b])->nodes;
   }
-  out->points = mesh->point_count * out->copies;
-  if (out->nodes > INT32_MAX) {
+  if (grid.nodes > INT32_MAX) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "a VTU file takes at most %d nodes of cells",
                     INT32_MAX);
   }
-  return DEA_OK;
+  void *before = dea_c_locale_enter();
+  build(&file, &grid, voltage_V);
+  dea_c_locale_leave(before);
+  dea_text_free(&file.data);
+  const dea_status status = dea_text_write_path(ctx, &file.head, path);
+  dea_text_free(&file.head);
+  return status;
 }
 
 dea_status dea_vtu_write(struct dea_context *ctx, const struct dea_field_mesh *mesh,
                          double voltage_V, bool whole, const char *path)
 {
-  struct grid grid;
-  DEA_TRY(ctx, count(ctx, mesh, whole, &grid));
-  struct file file = {.head = {.ctx = ctx}, .data = {.ctx = ctx}};
-  struct dea_bytes all = {.ctx = ctx};
-  void *before = dea_c_locale_enter();
-  build(&file, &grid, voltage_V);
-  dea_c_locale_leave(before);
-  const char tail[] = "\n</AppendedData>\n</VTKFile>\n";
-  dea_bytes_reserve(&all, file.head.length + file.data.length + sizeof tail);
-  dea_bytes_add(&all, dea_text_get(&file.head), file.head.length);
-  dea_bytes_add(&all, file.data.data, file.data.length);
-  dea_bytes_add(&all, tail, sizeof tail - 1);
-  dea_status status = file.head.failed || file.data.failed || all.failed
-                          ? DEA_E_MEMORY
-                          : dea_file_write(ctx, path, all.data, all.length);
-  dea_text_free(&file.head);
-  dea_bytes_free(&file.data);
-  dea_bytes_free(&all);
+  const size_t copies = whole ? dea_copy_count(mesh) : 1;
+  struct dea_field_mesh *all = NULL;
+  DEA_TRY(ctx, copies > 1 ? dea_field_mesh_whole(ctx, mesh, &all) : DEA_OK);
+  const dea_status status = write(ctx, all != NULL ? all : mesh, copies, voltage_V, path);
+  dea_field_mesh_destroy(ctx, all);
   return status;
 }
 
@@ -318,8 +307,9 @@ dea_status dea_pvd_write(struct dea_context *ctx, const struct dea_pvd_entry *en
   void *before = dea_c_locale_enter();
   dea_text_add(&text,
                "<?xml version=\"1.0\"?>\n<!-- dea %s; time: %s -->\n<VTKFile type=\"Collection\" "
-               "version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
-               DEA_VERSION, rising ? "voltage in V" : "number of the point in the sweep");
+               "version=\"0.1\" byte_order=\"%s\">\n<Collection>\n",
+               DEA_VERSION, rising ? "voltage in V" : "number of the point in the sweep",
+               byte_order());
   for (size_t i = 0; i < entry_count; i++) {
     dea_text_add(&text, "<DataSet timestep=\"%.10g\" group=\"\" part=\"0\" file=\"%s\"/>\n",
                  rising ? entries[i].voltage_V : (double)i, entries[i].file);

@@ -1,5 +1,5 @@
-/* Fields for ParaView, meshio and the like: VTU files (unstructured grid, appended raw binary,
- * little-endian, headers of 64 bits) and a PVD file that lines them up by voltage. */
+/* Fields for ParaView, meshio and the like: VTU files (unstructured grid, appended raw binary
+ * in the machine's byte order, headers of 64 bits) and a PVD file that lines them up by voltage. */
 #pragma once
 
 #include "result/field_mesh.h"

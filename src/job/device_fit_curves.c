@@ -50,12 +50,10 @@ static dea_status check_quantities(struct reading *r)
     const struct dea_label *label = &r->text->quantities[k];
     const int column = dea_column_find(r->ctx, label->text);
     if (column < 0) {
-      const char *nearest;
-      DEA_TRY(r->ctx, dea_column_nearest(r->ctx, label->text, &nearest));
-      DEA_TRY(r->ctx,
-              dea_finding_add(r->ctx, DEA_ERROR, label->location, "'%.60s' is not a quantity%s%s%s",
-                              label->text, nearest != NULL ? "; did you mean '" : "",
-                              nearest != NULL ? nearest : "", nearest != NULL ? "'?" : ""));
+      char hint[DEA_HINT_SIZE];
+      DEA_TRY(r->ctx, dea_column_hint(r->ctx, label->text, NULL, hint));
+      DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, label->location,
+                                      "'%.60s' is not a quantity%s", label->text, hint));
     } else if (!dea_points_have(r->table->curve.points, r->table->curve.count, column)) {
       DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, label->location, "'%.80s' has no %s",
                                       r->table->file, label->text));

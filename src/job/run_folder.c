@@ -27,10 +27,9 @@ enum { EXPORT_COUNT = sizeof exports / sizeof exports[0] };
 static dea_status refuse_link(struct dea_context *ctx, const char *directory, const char *name)
 {
   struct stat info;
-  char *path = dea_path_join(ctx, directory, name);
-  DEA_TRY_MEMORY(path != NULL);
+  char path[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, directory, name, path));
   bool link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
-  dea_free(ctx, path);
   return !link ? DEA_OK
                : dea_fail(ctx, DEA_E_IO,
                           "%s/%s is a link to another place, which --force does not follow",
@@ -83,16 +82,14 @@ static dea_status move_all(struct dea_context *ctx, const char *from, const char
     if (strcmp(e->d_name, ".") == 0 || strcmp(e->d_name, "..") == 0) {
       continue;
     }
-    char *old = dea_path_join(ctx, from, e->d_name), *new = dea_path_join(ctx, to, e->d_name);
-    if (old == NULL || new == NULL) {
-      status = DEA_E_MEMORY;
-    } else if (rename(old, new) != 0) {
+    char old[DEA_PATH_SIZE], new[DEA_PATH_SIZE];
+    status = dea_path_build(ctx, from, e->d_name, old);
+    status = status == DEA_OK ? dea_path_build(ctx, to, e->d_name, new) : status;
+    if (status == DEA_OK && rename(old, new) != 0) {
       status = dea_path_is_folder(old) && dea_path_is_folder(new)
                    ? move_all(ctx, old, new)
                    : dea_fail(ctx, DEA_E_IO, "cannot move %s to %s: %s", old, new, strerror(errno));
     }
-    dea_free(ctx, old);
-    dea_free(ctx, new);
   }
   if (folder != NULL) {
     closedir(folder);
@@ -118,11 +115,10 @@ static void forget_figures(struct dea_context *ctx, const char *directory)
       dea_path_forget(ctx, directory, name);
     }
   }
-  char *folder = dea_path_join(ctx, directory, DEA_FIGURE_FOLDER);
-  if (folder != NULL) {
+  char folder[DEA_PATH_SIZE];
+  if (dea_path_build(ctx, directory, DEA_FIGURE_FOLDER, folder) == DEA_OK) {
     rmdir(folder); // one with other files in it stays
   }
-  dea_free(ctx, folder);
 }
 
 /* MODEL_KIND.csv, MODEL_KIND_events.csv and the like. */
@@ -177,11 +173,10 @@ static dea_status write_exports(struct dea_context *ctx, const struct dea_result
   DEA_TRY(ctx, dea_summary_text(ctx, result, &summary));
   dea_status status = dea_text_file_write(ctx, directory, exports[1], summary);
   dea_free(ctx, summary);
-  char *path = dea_path_join(ctx, directory, exports[2]);
-  DEA_TRY(ctx, path != NULL ? status : DEA_E_MEMORY);
-  status = dea_results_h5_write(ctx, result, path);
-  dea_free(ctx, path);
-  return status;
+  DEA_TRY(ctx, status);
+  char path[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, directory, exports[2], path));
+  return DEA_CHAIN(ctx, dea_results_h5_write(ctx, result, path));
 }
 
 static dea_status write_figures(struct dea_context *ctx, const struct dea_result *result,
@@ -196,11 +191,9 @@ static dea_status write_figures(struct dea_context *ctx, const struct dea_result
     double width_m = design->report.width_m.si;
     options.format.width_m = width_m > 0.0 ? width_m : options.format.width_m;
   }
-  char *folder = dea_path_join(ctx, directory, DEA_FIGURE_FOLDER);
-  DEA_TRY_MEMORY(folder != NULL);
-  dea_status status = dea_figures_write(ctx, result, folder, &options, NULL);
-  dea_free(ctx, folder);
-  return status;
+  char folder[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, directory, DEA_FIGURE_FOLDER, folder));
+  return DEA_CHAIN(ctx, dea_figures_write(ctx, result, folder, &options, NULL));
 }
 
 dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result *result,

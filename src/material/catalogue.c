@@ -110,20 +110,10 @@ static dea_status unknown_material(struct dea_context *ctx, const char *name,
   const char **names;
   size_t count;
   DEA_TRY(ctx, dea_catalogue_names(ctx, &names, &count));
-  struct dea_text list = {.ctx = ctx};
-  for (size_t i = 0; i < count; i++) {
-    dea_text_add(&list, "%s%s", i > 0 ? ", " : "", names[i]);
-  }
-  const char *nearest = dea_nearest_name(name, names, count);
+  char hint[DEA_HINT_SIZE];
+  dea_name_hint_list(name, names, count, " All materials: ", "; there are: ", hint);
   dea_status status =
-      list.failed
-          ? DEA_E_MEMORY
-          : dea_finding_add(ctx, DEA_ERROR, location, "there is no material '%.60s'%s%s%s: %s",
-                            name, nearest != NULL ? "; did you mean '" : "",
-                            nearest != NULL ? nearest : "",
-                            nearest != NULL ? "'? All materials" : "; there are",
-                            count > 0 ? dea_text_get(&list) : "none");
-  dea_text_free(&list);
+      dea_finding_add(ctx, DEA_ERROR, location, "there is no material '%.60s'%s", name, hint);
   dea_free(ctx, names);
   DEA_TRY(ctx, status);
   return dea_fail(ctx, DEA_E_DESIGN, "there is no material '%.60s'", name);
@@ -291,7 +281,7 @@ static int find_set(struct dea_context *ctx, const struct dea_material_data *dat
                     const struct dea_quantity *temperature)
 {
   const char *names[DEA_MATERIAL_SETS_MAX] = {NULL}, *what = sets->what;
-  char list[DEA_MATERIAL_SETS_MAX * (DEA_NAME_SIZE + 2)] = "";
+  char hint[DEA_HINT_SIZE];
   if (wanted == NULL || wanted[0] == '\0') {
     return find_nearest(sets, temperature);
   }
@@ -300,14 +290,10 @@ static int find_set(struct dea_context *ctx, const struct dea_material_data *dat
     if (strcmp(names[i], wanted) == 0) {
       return (int)i;
     }
-    size_t used = strlen(list);
-    snprintf(list + used, sizeof list - used, "%s%.63s", i > 0 ? ", " : "", names[i]);
   }
-  const char *nearest = dea_nearest_name(wanted, names, sets->count);
-  dea_status status = dea_finding_add(
-      ctx, DEA_ERROR, location, "material '%s' has no %s '%.60s'%s%s%s: %s", data->name.text, what,
-      wanted, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-      nearest != NULL ? "'? All" : "; there are", sets->count > 0 ? list : "none");
+  dea_name_hint_list(wanted, names, sets->count, " All: ", "; there are: ", hint);
+  dea_status status = dea_finding_add(ctx, DEA_ERROR, location, "material '%s' has no %s '%.60s'%s",
+                                      data->name.text, what, wanted, hint);
   if (status == DEA_OK) {
     dea_fail(ctx, DEA_E_DESIGN, "material '%s' has no %s '%.60s'", data->name.text, what, wanted);
   }

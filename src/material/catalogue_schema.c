@@ -152,9 +152,6 @@ static const struct dea_field branch_fields[] = {
                    "standard uncertainty of the time", .max = 1e12, .absent_text = "not given"),
 };
 
-static const struct dea_record branch_record = {"branch", "spring and dashpot in series",
-                                                branch_fields, COUNT(branch_fields)};
-
 static const struct dea_field wlf_fields[] = {
     DEA_NUMBER_ROW("c1", offsetof(struct dea_viscosity_set, wlf_c1), "1", "2.4",
                    "first constant of Williams, Landel and Ferry", .above_min = true, .max = 100,
@@ -167,14 +164,10 @@ static const struct dea_field wlf_fields[] = {
                    "standard uncertainty of c2", .max = 1e5, .absent_text = "not given"),
 };
 
-static const struct dea_record wlf_record = {
-    "shift with temperature", "log10 a = -c1 (T - T0)/(c2 + T - T0); T0: the set's temperature",
-    wlf_fields, COUNT(wlf_fields)};
-
 static const struct dea_field viscosity_fields[] = {
     ID_FIELD(struct dea_viscosity_set, "set"),
     DEA_FIELD_ROW(RECORD, "branches", offsetof(struct dea_viscosity_set, branches),
-                  .record = &branch_record, .required = true,
+                  .record = DEA_ROWS(branch_fields), .required = true,
                   .doc = "Maxwell branches beside the law, which is the slow limit",
                   .example = "[{ratio: 0.05, time: 1 s}]",
                   DEA_LIST(1, DEA_BRANCHES_MAX, struct dea_branch_data,
@@ -182,7 +175,7 @@ static const struct dea_field viscosity_fields[] = {
     DEA_CHOICE_ROW("assumed", offsetof(struct dea_viscosity_set, assumed), dea_no_yes, "yes",
                    "whether the numbers are plausible rather than measured; runs then say so",
                    .default_text = "no"),
-    DEA_FIELD_ROW(RECORD, "wlf", 0, .record = &wlf_record,
+    DEA_FIELD_ROW(RECORD, "wlf", 0, .record = DEA_ROWS(wlf_fields),
                   .present_offset = offsetof(struct dea_viscosity_set, has_wlf),
                   .absent_text = "none",
                   .doc = "factor a of all times at the temperature T; holds in temperature_range",
@@ -201,30 +194,12 @@ static const struct dea_field elastic_fields[] = {
     NOTE_FIELDS(struct dea_material_data, elastic.notes),
 };
 
-static const struct dea_record law_record = {"set of a law", "parameters of a hyperelastic law",
-                                             law_fields, COUNT(law_fields)};
-static const struct dea_record permittivity_record = {
-    "permittivity", "eps_r = at_rest + slope (s - 1), s the mean in-plane stretch",
-    permittivity_fields, COUNT(permittivity_fields)};
-static const struct dea_record breakdown_record = {
-    "breakdown field", "docs/theory/breakdown.md; s^exponent: s the mean in-plane stretch",
-    breakdown_fields, COUNT(breakdown_fields)};
-static const struct dea_record viscosity_record = {"viscosity",
-                                                   "generalised Maxwell model at finite strain",
-                                                   viscosity_fields, COUNT(viscosity_fields)};
-static const struct dea_record resistivity_record = {"resistivity", "volume resistivity",
-                                                     resistivity_fields, COUNT(resistivity_fields)};
-static const struct dea_record density_record = {"density", "mass density", density_fields,
-                                                 COUNT(density_fields)};
-static const struct dea_record elastic_record = {"linear elasticity", "linear elastic constants",
-                                                 elastic_fields, COUNT(elastic_fields)};
-
 static const char *const kinds[] = {"elastomer", "plastic", "electrode", NULL};
 
-#define SET_LIST_FIELD(name, member, counter, about, none, text)                                   \
+#define SET_LIST_FIELD(name, member, counter, rows, none, text)                                    \
   {                                                                                                \
     .key = name, .kind = DEA_FIELD_RECORD, .offset = offsetof(struct dea_material_data, member),   \
-    .record = &about, .list_min = 1, .list_max = DEA_MATERIAL_SETS_MAX,                            \
+    .record = DEA_ROWS(rows), .list_min = 1, .list_max = DEA_MATERIAL_SETS_MAX,                    \
     .element_size = sizeof((struct dea_material_data *)0)->member[0],                              \
     .count_offset = offsetof(struct dea_material_data, counter), .absent_text = none, .doc = text  \
   }
@@ -239,21 +214,21 @@ static const struct dea_field material_fields[] = {
                   "ELASTOSIL Film 2030 (Wacker)", "what the material is", .absent_text = "none"),
     DEA_CHOICE_ROW("kind", offsetof(struct dea_material_data, kind), kinds, "elastomer",
                    "kind of material", .required = true),
-    DEA_FIELD_ROW(RECORD, "density", 0, .record = &density_record,
+    DEA_FIELD_ROW(RECORD, "density", 0, .record = DEA_ROWS(density_fields),
                   .present_offset = offsetof(struct dea_material_data, has_density),
                   .absent_text = "unknown", .doc = "mass density"),
-    SET_LIST_FIELD("laws", laws, law_count, law_record, "none",
+    SET_LIST_FIELD("laws", laws, law_count, law_fields, "none",
                    "sets of parameters of hyperelastic laws; the first is the default"),
-    DEA_FIELD_ROW(RECORD, "elastic", 0, .record = &elastic_record,
+    DEA_FIELD_ROW(RECORD, "elastic", 0, .record = DEA_ROWS(elastic_fields),
                   .present_offset = offsetof(struct dea_material_data, has_elastic),
                   .absent_text = "none", .doc = "linear elastic constants"),
-    SET_LIST_FIELD("permittivity", permittivity, permittivity_count, permittivity_record, "unknown",
+    SET_LIST_FIELD("permittivity", permittivity, permittivity_count, permittivity_fields, "unknown",
                    "relative permittivity; the first is the default"),
-    SET_LIST_FIELD("breakdown", breakdown, breakdown_count, breakdown_record, "unknown",
+    SET_LIST_FIELD("breakdown", breakdown, breakdown_count, breakdown_fields, "unknown",
                    "breakdown field; the first is the default; left out when unknown"),
-    SET_LIST_FIELD("viscosity", viscosity, viscosity_count, viscosity_record, "none",
+    SET_LIST_FIELD("viscosity", viscosity, viscosity_count, viscosity_fields, "none",
                    "viscosity; the first is the default; left out when unknown"),
-    DEA_FIELD_ROW(RECORD, "resistivity", 0, .record = &resistivity_record,
+    DEA_FIELD_ROW(RECORD, "resistivity", 0, .record = DEA_ROWS(resistivity_fields),
                   .present_offset = offsetof(struct dea_material_data, has_resistivity),
                   .absent_text = "unknown", .doc = "electrical resistivity, for leakage"),
 };
@@ -284,21 +259,15 @@ static dea_status find_law(const struct dea_reader *reader, struct dea_law_set *
   const struct dea_law *const *laws = dea_law_all(&count);
   const char *names[32];
   size_t named = 0;
-  struct dea_text list = {.ctx = reader->ctx};
+  char hint[DEA_HINT_SIZE];
   for (size_t i = 0; i < count && named < COUNT(names); i++) {
     if (laws[i]->compressible == NULL) {
-      dea_text_add(&list, "%s%s", named > 0 ? ", " : "", laws[i]->name);
       names[named++] = laws[i]->name;
     }
   }
-  const char *nearest = dea_nearest_name(set->law_name.text, names, named);
-  dea_status status = dea_schema_error(
-      reader, set->law_name.location, "'%.60s' is not a law%s%s%s: %s", set->law_name.text,
-      nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-      nearest != NULL ? "'? All laws" : "; there are", dea_text_get(&list));
-  bool failed = list.failed;
-  dea_text_free(&list);
-  return failed ? DEA_E_MEMORY : status;
+  dea_name_hint_list(set->law_name.text, names, named, " All laws: ", "; there are: ", hint);
+  return dea_schema_error(reader, set->law_name.location, "'%.60s' is not a law%s",
+                          set->law_name.text, hint);
 }
 
 static const char *example_of(const char *unit)

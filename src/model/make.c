@@ -11,11 +11,8 @@ dea_status dea_model_build(
   *out = NULL;
   struct dea_model *model = dea_alloc(ctx, 1, size);
   DEA_TRY_MEMORY(model != NULL);
-  dea_status status = prepare(ctx, device, settings != NULL ? settings : &usual, model);
-  if (status != DEA_OK) {
-    destroy(ctx, model);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, prepare(ctx, device, settings != NULL ? settings : &usual, model),
+               destroy(ctx, model));
   *out = model;
   return DEA_OK;
 }

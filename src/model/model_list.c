@@ -38,16 +38,12 @@ dea_status dea_model_seek(struct dea_context *ctx, const char *name, struct dea_
     return DEA_OK;
   }
   const char *names[sizeof models / sizeof models[0]];
-  struct dea_text known = {.ctx = ctx};
   for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
     names[i] = models[i]->name;
-    dea_text_add(&known, "%s%s", i > 0 ? ", " : "", names[i]);
   }
-  const char *nearest = dea_nearest_name(name, names, sizeof names / sizeof names[0]);
-  dea_status status = dea_finding_add(
-      ctx, DEA_ERROR, place, "there is no model '%.60s' in this version; there are: %s%s%s%s", name,
-      dea_text_get(&known), nearest != NULL ? "; did you mean '" : "",
-      nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
-  dea_text_free(&known);
-  return status;
+  char known[DEA_HINT_SIZE], hint[DEA_HINT_SIZE];
+  return dea_finding_add(ctx, DEA_ERROR, place,
+                         "there is no model '%.60s' in this version; there are: %s%s", name,
+                         dea_names_list(names, sizeof names / sizeof names[0], known),
+                         dea_name_hint(name, names, sizeof names / sizeof names[0], hint));
 }

@@ -147,12 +147,14 @@ const char **dea_column_keys(struct dea_context *ctx)
   return keys;
 }
 
-dea_status dea_column_nearest(struct dea_context *ctx, const char *text, const char **out)
+dea_status dea_column_hint(struct dea_context *ctx, const char *text, const char *otherwise,
+                           char out[DEA_HINT_SIZE])
 {
   const char **keys = dea_column_keys(ctx);
-  *out = keys != NULL ? dea_nearest_name(text, keys, (size_t)dea_column_count(ctx)) : NULL;
+  DEA_TRY_MEMORY(keys != NULL);
+  dea_name_hint_list(text, keys, (size_t)dea_column_count(ctx), NULL, otherwise, out);
   dea_free(ctx, keys);
-  return keys != NULL ? DEA_OK : DEA_E_MEMORY;
+  return DEA_OK;
 }
 
 /* Room for one more column; NULL on failure. */
@@ -166,20 +168,13 @@ static struct registry *get_registry(struct dea_context *ctx)
     }
     registry->ctx = ctx;
     if (dea_context_keep(ctx, registry, release) != DEA_OK) {
-      dea_free(ctx, registry);
-      return NULL;
+      return NULL; // it was released
     }
   }
-  if (registry->count == registry->capacity) {
-    const size_t capacity = registry->capacity > 0 ? 2 * registry->capacity : 32;
-    void *columns = dea_resize(ctx, registry->columns, capacity, sizeof(struct dea_column *));
-    if (columns == NULL) {
-      return NULL;
-    }
-    registry->columns = columns;
-    registry->capacity = capacity;
-  }
-  return registry;
+  return dea_array_grow(ctx, &registry->columns, registry->count, &registry->capacity,
+                        sizeof *registry->columns) == DEA_OK
+             ? registry
+             : NULL;
 }
 
 dea_status dea_column_add(struct dea_context *ctx, const struct dea_column *column, int *out)
@@ -280,19 +275,21 @@ bool dea_points_have(const struct dea_load_point *points, size_t count, int colu
   return false;
 }
 
-void dea_column_error_key(const struct dea_column *column, char out[DEA_ERROR_KEY_SIZE])
+void dea_column_word_key(const struct dea_column *column, const char *word, const char *si_unit,
+                         char out[DEA_ERROR_KEY_SIZE])
 {
-  char unit[KEY_UNIT_SIZE];
-  const size_t length = strlen(column->key), outcome = key_unit(column->si_unit, unit);
-  snprintf(out, DEA_ERROR_KEY_SIZE, "%.*s_error%s", (int)(length > outcome ? length - outcome : 0),
-           column->key, unit);
+  char own[KEY_UNIT_SIZE], unit[KEY_UNIT_SIZE];
+  const size_t length = strlen(column->key), end = key_unit(column->si_unit, own);
+  key_unit(si_unit, unit);
+  snprintf(out, DEA_ERROR_KEY_SIZE, "%.*s_%s%s", (int)(length > end ? length - end : 0),
+           column->key, word, unit);
 }
 
 int dea_point_error_column(const struct dea_context *ctx, int column)
 {
   const struct dea_column *of = dea_column_at(ctx, column);
   char key[DEA_ERROR_KEY_SIZE];
-  dea_column_error_key(of, key);
+  dea_column_word_key(of, "error", of->si_unit, key);
   return find_exactly(ctx, key);
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "base/text.h"
 #include "result/load_point.h"
 #include "result/profile.h"
 
@@ -40,8 +41,9 @@ const struct dea_column *dea_column_at(const struct dea_context *ctx, int column
 int dea_column_find(const struct dea_context *ctx, const char *key);
 /* Keys of all columns, [dea_column_count]; owned by the caller, NULL on failure. */
 const char **dea_column_keys(struct dea_context *ctx);
-/* Key of a column that a text is near to, for messages; lent until the context dies, NULL: none. */
-dea_status dea_column_nearest(struct dea_context *ctx, const char *text, const char **out);
+/* dea_name_hint of them; where none is near `otherwise` and their list, NULL: nothing. */
+dea_status dea_column_hint(struct dea_context *ctx, const char *text, const char *otherwise,
+                           char out[DEA_HINT_SIZE]);
 /* Adds a column, whose texts are copied, unless there is one of that key. */
 dea_status dea_column_add(struct dea_context *ctx, const struct dea_column *column, int *out);
 /* Name as a part of a key: each run of ASCII characters but letters and digits is one "_". */
@@ -71,9 +73,10 @@ void dea_point_set(struct dea_load_point *point, int column, double value_si);
 /* True when at least one of the points has a number in that column. */
 bool dea_points_have(const struct dea_load_point *points, size_t count, int column);
 
-/* Key of the estimated error of a column: "hub_z_error_m". */
+/* Key of what is said of a column by a word and in a unit: "hub_z_error_m" of "hub_z_m". */
 enum { DEA_ERROR_KEY_SIZE = 128 };
-void dea_column_error_key(const struct dea_column *column, char out[DEA_ERROR_KEY_SIZE]);
+void dea_column_word_key(const struct dea_column *column, const char *word, const char *si_unit,
+                         char out[DEA_ERROR_KEY_SIZE]);
 /* Column of the estimated error of that column, or -1. */
 int dea_point_error_column(const struct dea_context *ctx, int column);
 /* Whether the number in that column is an upper bound and no prediction: z and force of a point

@@ -80,16 +80,13 @@ bool dea_load_point_is_one_of_several(const struct dea_load_point *point)
 const char *dea_flags_text(unsigned flags, char out[DEA_FLAGS_SIZE])
 {
   size_t n = 0;
+  out[0] = '\0';
   for (int k = 0; k < DEA_FLAG_COUNT; k++) {
-    size_t length = strlen(dea_flag_words[k].word);
-    if ((flags >> k & 1u) != 0 && n + length + 2 < DEA_FLAGS_SIZE) {
-      out[n] = ' ';
-      n += n > 0;
-      memcpy(out + n, dea_flag_words[k].word, length);
-      n += length;
+    if ((flags >> k & 1u) != 0 && n < DEA_FLAGS_SIZE) {
+      n += (size_t)snprintf(out + n, DEA_FLAGS_SIZE - n, "%s%s", n > 0 ? " " : "",
+                            dea_flag_words[k].word);
     }
   }
-  out[n] = '\0';
   return out;
 }
 

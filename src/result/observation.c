@@ -4,46 +4,24 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LENGTH(key, title, meaning)                                                                \
-  {                                                                                                \
-    key, "m", "um", 1e6, title, meaning                                                            \
-  }
-#define TURN(axis)                                                                                 \
-  {                                                                                                \
-    "turn_" axis "_rad", "rad", "deg", 57.29577951308232, "turn " axis,                            \
-        "turn of a body about " axis                                                               \
-  }
-#define RATIO(key, title, meaning)                                                                 \
-  {                                                                                                \
-    key, "1", "1", 1, title, meaning                                                               \
-  }
-#define FORCE(axis)                                                                                \
-  {                                                                                                \
-    "force_" axis "_N", "N", "mN", 1e3, "force " axis, "on a body, of what holds or moves it"      \
-  }
-#define MOMENT(axis)                                                                               \
-  {                                                                                                \
-    "moment_" axis "_N_m", "N m", "uN m", 1e6, "moment " axis, "on a body about its centre"        \
-  }
-
 const struct dea_column dea_observed_columns[DEA_OBSERVED_COUNT] = {
-    LENGTH("x_m", "x", "displacement along x"),
-    LENGTH("y_m", "y", "displacement along y"),
-    LENGTH("z_m", "z", "displacement out of the plane"),
-    TURN("x"),
-    TURN("y"),
-    TURN("z"),
-    LENGTH("u_m", "u", "displacement outwards"),
-    RATIO("stretch", "stretch", "length of a line over its flat one"),
-    RATIO("stretch_x", "stretch x", "mean stretch of a region along x"),
-    RATIO("stretch_y", "stretch y", "mean stretch of a region along y"),
-    RATIO("area_stretch", "area stretch", "area of a region over its flat one"),
-    FORCE("x"),
-    FORCE("y"),
-    FORCE("z"),
-    MOMENT("x"),
-    MOMENT("y"),
-    MOMENT("z"),
+    {"x_m", "m", "um", 1e6, "x", "displacement along x"},
+    {"y_m", "m", "um", 1e6, "y", "displacement along y"},
+    {"z_m", "m", "um", 1e6, "z", "displacement out of the plane"},
+    {"turn_x_rad", "rad", "deg", 57.29577951308232, "turn x", "turn of a body about x"},
+    {"turn_y_rad", "rad", "deg", 57.29577951308232, "turn y", "turn of a body about y"},
+    {"turn_z_rad", "rad", "deg", 57.29577951308232, "turn z", "turn of a body about z"},
+    {"u_m", "m", "um", 1e6, "u", "displacement outwards"},
+    {"stretch", "1", "1", 1, "stretch", "length of a line over its flat one"},
+    {"stretch_x", "1", "1", 1, "stretch x", "mean stretch of a region along x"},
+    {"stretch_y", "1", "1", 1, "stretch y", "mean stretch of a region along y"},
+    {"area_stretch", "1", "1", 1, "area stretch", "area of a region over its flat one"},
+    {"force_x_N", "N", "mN", 1e3, "force x", "on a body, of what holds or moves it"},
+    {"force_y_N", "N", "mN", 1e3, "force y", "on a body, of what holds or moves it"},
+    {"force_z_N", "N", "mN", 1e3, "force z", "on a body, of what holds or moves it"},
+    {"moment_x_N_m", "N m", "uN m", 1e6, "moment x", "on a body about its centre"},
+    {"moment_y_N_m", "N m", "uN m", 1e6, "moment y", "on a body about its centre"},
+    {"moment_z_N_m", "N m", "uN m", 1e6, "moment z", "on a body about its centre"},
     {"pressure_Pa", "Pa", "kPa", 1e-3, "pressure", "on a face, into its ply"},
     {"volume_m3", "m3", "ml", 1e6, "volume", "that a face with a pressure has swept"},
     {"contact_force_N", "N", "mN", 1e3, "force", "of a face on what it touches"},
@@ -63,18 +41,13 @@ static const struct dea_column channel_columns[DEA_OBSERVED_OF_CHANNEL] = {
 
 enum dea_observed dea_observed_main(const double values[DEA_OBSERVED_COUNT])
 {
+  static const enum dea_observed mains[] = {DEA_OBSERVED_STRETCH, DEA_OBSERVED_VOLUME,
+                                            DEA_OBSERVED_CONTACT_FORCE, DEA_OBSERVED_AREA_STRETCH};
   enum dea_observed main = DEA_OBSERVED_X;
-  if (!isnan(values[DEA_OBSERVED_STRETCH])) {
-    return DEA_OBSERVED_STRETCH;
-  }
-  if (!isnan(values[DEA_OBSERVED_VOLUME])) {
-    return DEA_OBSERVED_VOLUME;
-  }
-  if (!isnan(values[DEA_OBSERVED_CONTACT_AREA])) {
-    return DEA_OBSERVED_CONTACT_FORCE;
-  }
-  if (!isnan(values[DEA_OBSERVED_AREA_STRETCH])) {
-    return DEA_OBSERVED_AREA_STRETCH;
+  for (size_t k = 0; k < sizeof mains / sizeof mains[0]; k++) {
+    if (!isnan(values[mains[k]])) {
+      return mains[k];
+    }
   }
   for (int k = DEA_OBSERVED_Y; k <= DEA_OBSERVED_Z; k++) {
     main = fabs(values[k]) > fabs(values[main]) ? (enum dea_observed)k : main;
@@ -180,18 +153,34 @@ struct listing {
 static dea_status add(struct listing *list, const char *name, const char *part,
                       const struct dea_column *of, struct dea_monitor_column column)
 {
-  char key[2 * DEA_NAME_SIZE], header[2 * DEA_NAME_SIZE];
+  static const struct {
+    const char *word, *before, *meaning; // NULL: of the quantity itself
+  } forms[] = {
+      [DEA_OF_MONITOR_ERROR] = {"error", "error of ",
+                                "estimated error of the mesh, where the monitor moves most along "
+                                "that"},
+      [DEA_OF_AMPLITUDE] = {"amplitude", "amplitude ", "of the motion that the excitation makes"},
+      [DEA_OF_PHASE] = {"phase", "phase ", "of a motion against the excitation"},
+  };
+  const char *word = forms[column.source].word, *before = forms[column.source].before;
+  char key[2 * DEA_NAME_SIZE], header[2 * DEA_NAME_SIZE], worded[DEA_ERROR_KEY_SIZE];
   struct dea_column shown = *of;
-  const bool error = column.source == DEA_OF_MONITOR_ERROR;
   snprintf(key, sizeof key, "%s_%s", part, of->key);
-  snprintf(header, sizeof header, "%s%.63s %s", error ? "error of " : "", name, of->header);
+  snprintf(header, sizeof header, "%s%.63s %s", before != NULL ? before : "", name, of->header);
   shown.key = key;
   shown.header = header;
-  if (error) {
-    char of_error[DEA_ERROR_KEY_SIZE];
-    dea_column_error_key(&shown, of_error);
-    snprintf(key, sizeof key, "%s", of_error);
-    shown.meaning = "estimated error of the mesh, where the monitor moves most along that";
+  if (word != NULL) {
+    dea_column_word_key(&shown, word, column.source == DEA_OF_PHASE ? "rad" : of->si_unit, worded);
+    shown.key = worded;
+    shown.meaning = forms[column.source].meaning;
+  }
+  if (column.source == DEA_OF_PHASE) {
+    shown.si_unit = "rad";
+    shown.display_unit = "deg";
+    shown.factor = 57.29577951308232;
+  } else if (column.source == DEA_OF_AMPLITUDE && strcmp(of->si_unit, "m") == 0) {
+    shown.display_unit = "nm";
+    shown.factor = 1e9;
   }
   DEA_TRY(list->ctx, dea_column_add(list->ctx, &shown, &column.column));
   list->columns[list->count++] = column;
@@ -214,37 +203,39 @@ static void part_of(const char *const *names, size_t index, char out[DEA_KEY_PAR
   }
 }
 
+/* answers: to an excitation, of the motions; else the quantities with their errors. */
 static dea_status add_monitor(struct listing *list, const struct dea_layout *layout,
-                              const char *const *names, size_t index)
+                              const char *const *names, size_t index, bool answers)
 {
-  const enum dea_layout_monitor_kind kind = layout->monitors[index].kind;
   char part[DEA_KEY_PART_SIZE];
   part_of(names, index, part);
-  for (size_t k = 0; k < DEA_OBSERVED_COUNT; k++) {
-    struct dea_monitor_column column = {.source = DEA_OF_MONITOR, .index = index, .number = k};
-    if (!dea_observed_has(kind, (enum dea_observed)k)) {
+  for (size_t k = 0; k < (answers ? DEA_OBSERVED_MOTIONS : DEA_OBSERVED_COUNT); k++) {
+    const struct dea_column *of = &dea_observed_columns[k];
+    struct dea_monitor_column column = {.index = index, .number = k};
+    if (!dea_observed_has(layout->monitors[index].kind, (enum dea_observed)k)) {
       continue;
     }
-    DEA_TRY(list->ctx, add(list, names[index], part, &dea_observed_columns[k], column));
-    if (has_error((enum dea_observed)k)) {
-      column.source = DEA_OF_MONITOR_ERROR;
-      DEA_TRY(list->ctx, add(list, names[index], part, &dea_observed_columns[k], column));
+    column.source = answers ? DEA_OF_AMPLITUDE : DEA_OF_MONITOR;
+    DEA_TRY(list->ctx, add(list, names[index], part, of, column));
+    if (answers || has_error((enum dea_observed)k)) {
+      column.source = answers ? DEA_OF_PHASE : DEA_OF_MONITOR_ERROR;
+      DEA_TRY(list->ctx, add(list, names[index], part, of, column));
     }
   }
   return DEA_OK;
 }
 
-dea_status dea_layout_columns(struct dea_arena *memory, const struct dea_layout *layout,
-                              struct dea_monitor_column **out, size_t *count)
+static dea_status list_columns(struct dea_arena *memory, const struct dea_layout *layout,
+                               bool answers, struct dea_monitor_column **out, size_t *count)
 {
-  const size_t monitors = layout->monitor_count, channels = layout->channel_count;
+  const size_t monitors = layout->monitor_count, channels = answers ? 0 : layout->channel_count;
   const size_t capacity = monitors * 2 * DEA_OBSERVED_COUNT + channels * DEA_OBSERVED_OF_CHANNEL;
   struct listing list = {memory->ctx, dea_arena_alloc(memory, capacity, sizeof *list.columns), 0};
   const char **names = dea_arena_alloc(memory, monitors + channels, sizeof *names);
   DEA_TRY(memory->ctx, dea_arena_status(memory));
   for (size_t i = 0; i < monitors; i++) {
     names[i] = layout->monitors[i].name;
-    DEA_TRY(memory->ctx, add_monitor(&list, layout, names, i));
+    DEA_TRY(memory->ctx, add_monitor(&list, layout, names, i, answers));
   }
   for (size_t i = 1; i < channels; i++) {
     char part[DEA_KEY_PART_SIZE];
@@ -260,57 +251,16 @@ dea_status dea_layout_columns(struct dea_arena *memory, const struct dea_layout 
   return DEA_OK;
 }
 
-/* Amplitude and phase of a quantity of a monitor. */
-static dea_status add_answer(struct listing *list, const char *name, const char *part,
-                             struct dea_monitor_column column)
+dea_status dea_layout_columns(struct dea_arena *memory, const struct dea_layout *layout,
+                              struct dea_monitor_column **out, size_t *count)
 {
-  const struct dea_column *of = &dea_observed_columns[column.number];
-  const char *unit = strcmp(of->si_unit, "1") == 0 ? "" : of->si_unit; // "m", "rad"
-  const size_t end = unit[0] != '\0' ? strlen(unit) + 1 : 0;
-  char key[2 * DEA_NAME_SIZE], header[2 * DEA_NAME_SIZE];
-  for (int phase = 0; phase < 2; phase++) {
-    const bool length = strcmp(of->si_unit, "m") == 0;
-    const struct dea_column shown =
-        phase ? (struct dea_column){key,    "rad",
-                                    "deg",  57.29577951308232,
-                                    header, "of a motion against the excitation"}
-              : (struct dea_column){key,
-                                    of->si_unit,
-                                    length ? "nm" : of->display_unit,
-                                    length ? 1e9 : of->factor,
-                                    header,
-                                    "of the motion that the excitation makes"};
-    snprintf(key, sizeof key, "%s_%.*s_%s%s%s", part, (int)(strlen(of->key) - end), of->key,
-             phase ? "phase_rad" : "amplitude", phase || end == 0 ? "" : "_", phase ? "" : unit);
-    snprintf(header, sizeof header, "%s %.63s %s", phase ? "phase" : "amplitude", name, of->header);
-    column.source = phase ? DEA_OF_PHASE : DEA_OF_AMPLITUDE;
-    DEA_TRY(list->ctx, dea_column_add(list->ctx, &shown, &column.column));
-    list->columns[list->count++] = column;
-  }
-  return DEA_OK;
+  return list_columns(memory, layout, false, out, count);
 }
 
 dea_status dea_layout_answer_columns(struct dea_arena *memory, const struct dea_layout *layout,
                                      struct dea_monitor_column **out, size_t *count)
 {
-  const size_t monitors = layout->monitor_count, capacity = monitors * 2 * DEA_OBSERVED_MOTIONS;
-  struct listing list = {memory->ctx, dea_arena_alloc(memory, capacity, sizeof *list.columns), 0};
-  const char **names = dea_arena_alloc(memory, monitors, sizeof *names);
-  DEA_TRY(memory->ctx, dea_arena_status(memory));
-  for (size_t i = 0; i < monitors; i++) {
-    char part[DEA_KEY_PART_SIZE];
-    names[i] = layout->monitors[i].name;
-    part_of(names, i, part);
-    for (size_t k = 0; k < DEA_OBSERVED_MOTIONS; k++) {
-      const struct dea_monitor_column column = {.index = i, .number = k};
-      if (dea_observed_has(layout->monitors[i].kind, (enum dea_observed)k)) {
-        DEA_TRY(memory->ctx, add_answer(&list, names[i], part, column));
-      }
-    }
-  }
-  *out = list.columns;
-  *count = list.count;
-  return DEA_OK;
+  return list_columns(memory, layout, true, out, count);
 }
 
 dea_status dea_device_columns_add(struct dea_context *ctx, const struct dea_device *device)

@@ -1,6 +1,6 @@
-#define _POSIX_C_SOURCE 200809L // gmtime_r
 #include "result/provenance.h"
 
+#include "base/clock.h"
 #include "base/text.h"
 #include "base/version.h"
 
@@ -11,7 +11,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <yaml.h>
 
 void dea_sha256_hex(const void *bytes, size_t length, char out[65])
@@ -42,15 +41,6 @@ void dea_libraries_text(char *out, size_t size)
            (int)la_minor, (int)la_patch);
 }
 
-static void now_text(char *out, size_t size)
-{
-  time_t now = time(NULL);
-  struct tm utc;
-  if (gmtime_r(&now, &utc) == NULL || strftime(out, size, "%Y-%m-%dT%H:%M:%SZ", &utc) == 0) {
-    out[0] = '\0';
-  }
-}
-
 dea_status dea_provenance_fill(struct dea_context *ctx, const char *input, size_t input_length,
                                const struct dea_override *overrides, size_t override_count,
                                const char *command, struct dea_provenance *provenance)
@@ -60,7 +50,7 @@ dea_status dea_provenance_fill(struct dea_context *ctx, const char *input, size_
   snprintf(p.compiler, sizeof p.compiler, "%s", DEA_COMPILER);
   snprintf(p.build, sizeof p.build, "%s", DEA_BUILD_TYPE);
   dea_libraries_text(p.libraries, sizeof p.libraries);
-  now_text(p.started, sizeof p.started);
+  dea_clock_stamp(p.started);
   dea_sha256_hex(input, input_length, p.input_sha256);
   struct dea_text text = {.ctx = ctx};
   for (size_t i = 0; i < override_count; i++) {

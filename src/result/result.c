@@ -89,23 +89,24 @@ dea_status dea_result_add_curve(struct dea_context *ctx, struct dea_result *resu
   return DEA_OK;
 }
 
-static bool is_table(const struct dea_result_table *table, const char *model, const char *study,
-                     const char *name)
+static struct dea_result_table *find_table(const struct dea_result *result, const char *model,
+                                           const char *study, const char *name)
 {
-  return strcmp(table->model, model) == 0 && strcmp(table->type.study, study) == 0 &&
-         strcmp(table->type.name, name) == 0;
+  for (size_t i = 0; i < result->table_count; i++) {
+    struct dea_result_table *table = &result->tables[i];
+    if (strcmp(table->model, model) == 0 && strcmp(table->type.study, study) == 0 &&
+        strcmp(table->type.name, name) == 0) {
+      return table;
+    }
+  }
+  return NULL;
 }
 
 const struct dea_result_table *dea_result_find_table(const struct dea_result *result,
                                                      const char *model, const char *study,
                                                      const char *name)
 {
-  for (size_t i = 0; i < result->table_count; i++) {
-    if (is_table(&result->tables[i], model, study, name)) {
-      return &result->tables[i];
-    }
-  }
-  return NULL;
+  return find_table(result, model, study, name);
 }
 
 dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *result,
@@ -115,14 +116,11 @@ dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *resu
   struct dea_result_table table;
   *out = NULL;
   DEA_TRY(ctx, dea_result_table_init(ctx, type, model, width, &table));
-  for (size_t i = 0; i < result->table_count; i++) {
-    struct dea_result_table *old = &result->tables[i];
-    if (is_table(old, model, type->study, type->name)) {
-      dea_result_table_free(ctx, old);
-      *old = table;
-      *out = old;
-      return DEA_OK;
-    }
+  *out = find_table(result, model, type->study, type->name);
+  if (*out != NULL) {
+    dea_result_table_free(ctx, *out);
+    **out = table;
+    return DEA_OK;
   }
   struct dea_result_table *tables =
       dea_resize(ctx, result->tables, result->table_count + 1, sizeof *tables);
@@ -140,13 +138,8 @@ dea_status dea_result_get_table(struct dea_context *ctx, struct dea_result *resu
                                 const struct dea_result_table_type *type, const char *model,
                                 struct dea_result_table **out)
 {
-  for (size_t i = 0; i < result->table_count; i++) {
-    if (dea_result_find_table(result, model, type->study, type->name) == &result->tables[i]) {
-      *out = &result->tables[i];
-      return DEA_OK;
-    }
-  }
-  return dea_result_add_table(ctx, result, type, model, 0, out);
+  *out = find_table(result, model, type->study, type->name);
+  return *out != NULL ? DEA_OK : dea_result_add_table(ctx, result, type, model, 0, out);
 }
 
 dea_status dea_result_adopt_table(struct dea_context *ctx, struct dea_result *result,
@@ -163,27 +156,11 @@ dea_status dea_result_adopt_table(struct dea_context *ctx, struct dea_result *re
   return DEA_OK;
 }
 
-/* Room for one more of *items; on failure everything stays as it was. */
-static dea_status reserve(struct dea_context *ctx, void **items, size_t count, size_t *capacity,
-                          size_t size)
-{
-  if (count < *capacity) {
-    return DEA_OK;
-  }
-  size_t wanted = *capacity > 0 ? 2 * *capacity : 16;
-  void *moved = dea_resize(ctx, *items, wanted, size);
-  DEA_TRY_MEMORY(moved != NULL);
-  *items = moved;
-  *capacity = wanted;
-  return DEA_OK;
-}
-
 dea_status dea_curve_add_point(struct dea_context *ctx, struct dea_curve *curve,
                                const struct dea_load_point *point)
 {
-  void *points = curve->points;
-  DEA_TRY(ctx, reserve(ctx, &points, curve->count, &curve->capacity, sizeof *curve->points));
-  curve->points = points;
+  DEA_TRY(ctx, dea_array_grow(ctx, &curve->points, curve->count, &curve->capacity,
+                              sizeof *curve->points));
   curve->memory.ctx = ctx;
   struct dea_monitor_values *monitors = dea_monitor_values_copy(&curve->memory, point->monitors);
   DEA_TRY(ctx, dea_arena_status(&curve->memory));
@@ -195,10 +172,8 @@ dea_status dea_curve_add_point(struct dea_context *ctx, struct dea_curve *curve,
 dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
                                const struct dea_event *event)
 {
-  void *events = curve->events;
-  DEA_TRY(ctx,
-          reserve(ctx, &events, curve->event_count, &curve->event_room, sizeof *curve->events));
-  curve->events = events;
+  DEA_TRY(ctx, dea_array_grow(ctx, &curve->events, curve->event_count, &curve->event_room,
+                              sizeof *curve->events));
   curve->memory.ctx = ctx;
   struct dea_monitor_values *monitors =
       dea_monitor_values_copy(&curve->memory, event->point.monitors);
@@ -277,13 +252,11 @@ dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *re
                                   const char *model, double voltage_V,
                                   const struct dea_profile *profile)
 {
-  void *profiles = result->profiles;
   if (profile->count == 0) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, reserve(ctx, &profiles, result->profile_count, &result->profile_room,
-                       sizeof *result->profiles));
-  result->profiles = profiles;
+  DEA_TRY(ctx, dea_array_grow(ctx, &result->profiles, result->profile_count, &result->profile_room,
+                              sizeof *result->profiles));
   DEA_TRY(ctx,
           copy_profile(ctx, model, voltage_V, profile, &result->profiles[result->profile_count]));
   result->profile_count++;
@@ -379,62 +352,35 @@ static size_t mesh_bytes(const struct dea_field_mesh *mesh)
   return bytes;
 }
 
-/* Surfaces of a model, and where the first, the second and the last of them are. */
-struct surfaces_of {
-  size_t count, first, second, last, bytes;
-};
-
-static struct surfaces_of list_surfaces(const struct dea_result *result, const char *model)
-{
-  struct surfaces_of list = {0};
-  for (size_t i = 0; i < result->surface_count; i++) {
-    if (strcmp(result->surfaces[i].model, model) == 0) {
-      list.first = list.count == 0 ? i : list.first;
-      list.second = list.count == 1 ? i : list.second;
-      list.last = i;
-      list.bytes += mesh_bytes(result->surfaces[i].mesh);
-      list.count++;
-    }
-  }
-  return list;
-}
-
-/* Removes the surfaces of a model from the second to the last: each other one, or (stride > 0) the
- * last if it is not a multiple of that many points after the first. */
-static void drop_surfaces(struct dea_context *ctx, struct dea_result *result, const char *model,
-                          size_t stride)
-{
-  const struct surfaces_of list = list_surfaces(result, model);
-  size_t kept = 0, number = 0;
-  for (size_t i = 0; i < result->surface_count; i++) {
-    struct dea_surface_record *record = &result->surfaces[i];
-    bool of_model = strcmp(record->model, model) == 0;
-    bool off = stride == 0 ? number % 2 == 1
-                           : i == list.last &&
-                                 (record->point - result->surfaces[list.first].point) % stride != 0;
-    number += of_model;
-    if (of_model && off) {
-      dea_field_mesh_destroy(ctx, record->mesh);
-    } else {
-      result->surfaces[kept++] = *record;
-    }
-  }
-  result->surface_count = kept;
-}
-
-/* Makes room in memory for one more of a model's surfaces. */
+/* Makes room in memory for one more of a model's surfaces. They are at equal distances from the
+ * first on, but for the last, which may be there only because it was the last: it goes, and then
+ * every second one until there is room. */
 static void thin_surfaces(struct dea_context *ctx, struct dea_result *result, const char *model,
                           size_t bytes)
 {
-  struct surfaces_of list = list_surfaces(result, model);
-  if (list.count > 2) { // the last may be there only because it was the last
-    drop_surfaces(ctx, result, model,
-                  result->surfaces[list.second].point - result->surfaces[list.first].point);
-    list = list_surfaces(result, model);
-  }
-  for (; list.count > 1 && list.bytes + bytes > result->surface_bytes_max;
-       list = list_surfaces(result, model)) {
-    drop_surfaces(ctx, result, model, 0);
+  for (size_t times = 1;; times = 2) {
+    size_t count = 0, first = 0, distance = 0, kept = 0, all_bytes = bytes;
+    for (size_t i = 0; i < result->surface_count; i++) {
+      const struct dea_surface_record *record = &result->surfaces[i];
+      if (strcmp(record->model, model) == 0) {
+        first = count == 0 ? record->point : first;
+        distance = count == 1 ? record->point - first : distance;
+        all_bytes += mesh_bytes(record->mesh);
+        count++;
+      }
+    }
+    if (distance == 0 || (times == 2 && all_bytes <= result->surface_bytes_max)) {
+      return;
+    }
+    for (size_t i = 0; i < result->surface_count; i++) {
+      struct dea_surface_record *record = &result->surfaces[i];
+      if (strcmp(record->model, model) == 0 && (record->point - first) % (times * distance) != 0) {
+        dea_field_mesh_destroy(ctx, record->mesh);
+      } else {
+        result->surfaces[kept++] = *record;
+      }
+    }
+    result->surface_count = kept;
   }
 }
 
@@ -446,17 +392,10 @@ dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *re
   dea_status status = name_set(ctx, "model", model, record.model);
   if (status == DEA_OK) {
     thin_surfaces(ctx, result, model, mesh_bytes(mesh));
+    status = dea_array_grow(ctx, &result->surfaces, result->surface_count, &result->surface_room,
+                            sizeof *result->surfaces);
   }
-  void *surfaces = result->surfaces;
-  if (status == DEA_OK) {
-    status = reserve(ctx, &surfaces, result->surface_count, &result->surface_room,
-                     sizeof *result->surfaces);
-  }
-  if (status != DEA_OK) {
-    dea_field_mesh_destroy(ctx, mesh);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  result->surfaces = surfaces;
+  DEA_TRY_ELSE(ctx, status, dea_field_mesh_destroy(ctx, mesh));
   result->surfaces[result->surface_count++] = record;
   return DEA_OK;
 }

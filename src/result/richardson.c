@@ -98,21 +98,15 @@ static double rest_of(const struct dea_column *column)
   return stretch ? 1 : 0;
 }
 
-/* The variant's point at a voltage, or NULL. */
-static const struct dea_load_point *point_at(const struct dea_variant *variant, double voltage_V)
+/* A column of the variant's point at a voltage; NAN without such a point. */
+static double value_at(const struct dea_variant *variant, double voltage_V, int column)
 {
   for (size_t i = 0; i < variant->curve.count; i++) {
     if (variant->curve.points[i].voltage_V == voltage_V) {
-      return &variant->curve.points[i];
+      return dea_point_get(&variant->curve.points[i], column);
     }
   }
-  return NULL;
-}
-
-static double value_at(const struct dea_variant *variant, double voltage_V, int column)
-{
-  const struct dea_load_point *point = point_at(variant, voltage_V);
-  return point != NULL ? dea_point_get(point, column) : NAN;
+  return NAN;
 }
 
 /* Largest size of a column's value beyond rest on all meshes at a voltage. */

@@ -90,23 +90,11 @@ void dea_result_table_free(struct dea_context *ctx, struct dea_result_table *tab
   table->row_count = table->capacity = 0;
 }
 
-static dea_status reserve(struct dea_context *ctx, struct dea_result_table *table)
-{
-  if (table->row_count < table->capacity) {
-    return DEA_OK;
-  }
-  size_t capacity = table->capacity > 0 ? 2 * table->capacity : 8;
-  struct dea_cell *cells = dea_resize(ctx, table->cells, capacity * table->stride, sizeof *cells);
-  DEA_TRY_MEMORY(cells != NULL);
-  table->cells = cells;
-  table->capacity = capacity;
-  return DEA_OK;
-}
-
 dea_status dea_result_table_add_row(struct dea_context *ctx, struct dea_result_table *table,
                                     const struct dea_result_table_value *values)
 {
-  DEA_TRY(ctx, reserve(ctx, table));
+  DEA_TRY(ctx, dea_array_grow(ctx, &table->cells, table->row_count, &table->capacity,
+                              table->stride * sizeof *table->cells));
   struct dea_cell *row = table->cells + table->row_count * table->stride;
   for (size_t i = 0; i < table->stride; i++) {
     row[i] = (struct dea_cell){.number = NAN};

@@ -71,7 +71,7 @@ static int open_in(int folder, const char *name, bool directory)
 }
 
 dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name, size_t max,
-                           struct dea_bytes *out)
+                           struct dea_text *out)
 {
   char chunk[16384];
   const int file = open_in(folder, name, false);
@@ -80,17 +80,16 @@ dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name
   }
   ssize_t got;
   while ((got = read(file, chunk, sizeof chunk)) > 0 && out->length <= max) {
-    dea_bytes_add(out, chunk, (size_t)got);
+    dea_text_add_bytes(out, chunk, (size_t)got);
   }
   close(file);
   if (out->length > max) {
     return dea_fail(ctx, DEA_E_IO, "%s has more than %zu bytes", name, max);
   }
-  dea_bytes_add_u8(out, 0); // so that it is a text too
+  dea_text_add_bytes(out, "", 0); // a text also of an empty file
   if (out->failed) {
     return dea_context_status(ctx);
   }
-  out->length--;
   return got < 0 ? dea_fail(ctx, DEA_E_IO, "cannot read %s: %s", name, strerror(errno)) : DEA_OK;
 }
 

@@ -1,7 +1,7 @@
 /* The files of the folder, none outside of it: no "..", no hidden name, no symbolic link. */
 #pragma once
 
-#include "base/bytes.h"
+#include "base/text.h"
 
 #include <jansson.h>
 
@@ -9,7 +9,7 @@
 bool dea_studio_name_good(const char *name, bool deep);
 /* Reads a file of at most max bytes; owned by the caller. folder: open. DEA_E_IO. */
 dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name, size_t max,
-                           struct dea_bytes *out);
+                           struct dea_text *out);
 /* What changes when a file is written; "" where there is none. */
 enum { DEA_STUDIO_STAMP = 64 };
 void dea_studio_stamp(int folder, const char *name, char out[DEA_STUDIO_STAMP]);

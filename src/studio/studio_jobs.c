@@ -80,21 +80,20 @@ static pid_t start(const char *program, int folder, const struct dea_studio_line
   return pid;
 }
 
-static void read_all(int file, struct dea_bytes *out)
+static void read_all(int file, struct dea_text *out)
 {
   char chunk[16384];
   ssize_t got;
   lseek(file, 0, SEEK_SET);
   while ((got = read(file, chunk, sizeof chunk)) > 0) {
-    dea_bytes_add(out, chunk, (size_t)got);
+    dea_text_add_bytes(out, chunk, (size_t)got);
   }
-  dea_bytes_add_u8(out, 0);
-  out->length -= !out->failed;
+  dea_text_add_bytes(out, "", 0); // a text also without any
 }
 
 dea_status dea_studio_run_command(struct dea_context *ctx, const char *program, int folder,
                                   const struct dea_studio_line *line, double limit_s,
-                                  struct dea_bytes *out, struct dea_bytes *err, int *code)
+                                  struct dea_text *out, struct dea_text *err, int *code)
 {
   const int files[2] = {memfd_create("out", MFD_CLOEXEC), memfd_create("err", MFD_CLOEXEC)};
   const pid_t pid =

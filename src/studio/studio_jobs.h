@@ -1,7 +1,6 @@
 /* What the studio has the command do: short questions, and a queue of runs, one a core. */
 #pragma once
 
-#include "base/bytes.h"
 #include "base/text.h"
 
 #include <jansson.h>
@@ -21,7 +20,7 @@ void dea_studio_line_show(const struct dea_studio_line *line, struct dea_text *o
  * its exit code. DEA_E_TOOL where it cannot be started, takes too long or dies. */
 dea_status dea_studio_run_command(struct dea_context *ctx, const char *program, int folder,
                                   const struct dea_studio_line *line, double limit_s,
-                                  struct dea_bytes *out, struct dea_bytes *err, int *code);
+                                  struct dea_text *out, struct dea_text *err, int *code);
 
 struct dea_studio_jobs;
 

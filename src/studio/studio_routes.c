@@ -47,7 +47,7 @@ static void respond(struct work *w, int status, const char *type, const char *by
   w->reply->status = status;
   w->reply->type = type;
   w->reply->body.length = 0;
-  dea_bytes_add(&w->reply->body, bytes, length);
+  dea_text_add_bytes(&w->reply->body, bytes, length);
 }
 
 /* Takes it. */
@@ -149,7 +149,7 @@ static void get_state(struct work *w)
 /* {text, version} of a file, without a text where it is not in UTF-8; NULL: there is none. */
 static json_t *file_json(struct work *w, const char *name)
 {
-  struct dea_bytes bytes = {.ctx = w->ctx};
+  struct dea_text bytes = {.ctx = w->ctx};
   char version[65];
   json_t *json = NULL;
   if (dea_studio_read(w->ctx, w->workspace->folder, name, DEA_STUDIO_BODY_MAX, &bytes) == DEA_OK) {
@@ -157,7 +157,7 @@ static json_t *file_json(struct work *w, const char *name)
     json = json_pack("{s:s}", "version", version);
     json_object_set_new(json, "text", json_stringn(bytes.data, bytes.length));
   }
-  dea_bytes_free(&bytes);
+  dea_text_free(&bytes);
   return json;
 }
 
@@ -267,8 +267,7 @@ enum { QUESTION_S = 30 };
  * an error. */
 static json_t *find_command(struct work *w, const struct dea_studio_line *line, const char *key)
 {
-  struct dea_bytes out = {.ctx = w->ctx}, err = {.ctx = w->ctx};
-  struct dea_text shown = {.ctx = w->ctx};
+  struct dea_text out = {.ctx = w->ctx}, err = {.ctx = w->ctx}, shown = {.ctx = w->ctx};
   int code = -1;
   const dea_status status =
       dea_studio_run_command(w->ctx, w->workspace->options->program, w->workspace->folder, line,
@@ -287,8 +286,8 @@ static json_t *find_command(struct work *w, const struct dea_studio_line *line, 
   }
   json_object_set_new(json, "command", json_string(dea_text_get(&shown)));
   dea_text_free(&shown);
-  dea_bytes_free(&out);
-  dea_bytes_free(&err);
+  dea_text_free(&out);
+  dea_text_free(&err);
   return json;
 }
 

@@ -29,7 +29,7 @@ struct dea_studio_request {
 struct dea_studio_reply {
   int status; // of HTTP
   const char *type;
-  struct dea_bytes body;
+  struct dea_text body;
   bool foreign; // a file of the folder: what it brings must not speak for the user
 };
 

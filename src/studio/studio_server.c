@@ -206,7 +206,7 @@ static int answer(struct dea_studio *studio, struct mg_connection *connection,
   } else {
     reply.status = send_refusal(connection, 408);
   }
-  dea_bytes_free(&reply.body);
+  dea_text_free(&reply.body);
   dea_free(ctx, body);
   dea_context_destroy(ctx);
   return reply.status;
@@ -345,11 +345,7 @@ dea_status dea_studio_start(struct dea_context *ctx, const struct dea_studio_opt
   *studio = (struct dea_studio){.ctx = ctx, .options = *options, .workspace = {.folder = -1}};
   pthread_mutex_init(&studio->workspace.write_lock, NULL);
   pthread_mutex_init(&studio->workspace.results_lock, NULL);
-  const dea_status status = begin(studio);
-  if (status != DEA_OK) {
-    dea_studio_stop(studio);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, begin(studio), dea_studio_stop(studio));
   *out = studio;
   return DEA_OK;
 }

@@ -38,16 +38,15 @@ dea_status dea_device_param_unknown(struct dea_context *ctx,
   for (size_t i = 0; i < count; i++) {
     known[i] = numbers[i].key;
   }
-  const char *nearest = why == NULL ? dea_nearest_name(name->text, known, count) : NULL;
+  char hint[DEA_HINT_SIZE];
   if (status == DEA_OK) {
     status =
-        dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s' %s%s%s%s", name->text,
+        dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s' %s%s", name->text,
                         why != NULL ? why
                         : plies     ? "is no number of a part of the design (plies.NAME.thickness, "
                                       "shapes.NAME.radius)"
                                     : "is no key of the design",
-                        nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                        nearest != NULL ? "'?" : "");
+                        dea_name_hint(name->text, known, why == NULL ? count : 0, hint));
   }
   dea_free(ctx, numbers);
   return status;

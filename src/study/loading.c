@@ -155,17 +155,16 @@ static double largest_Pa(const struct dea_layout *layout)
 static dea_status unknown(struct dea_context *ctx, const struct dea_label *label,
                           const struct dea_layout *layout, bool channel)
 {
-  const char *known[DEA_DESIGN_STOPS_MAX];
+  const char *known[DEA_DESIGN_STOPS_MAX] = {NULL};
   const size_t all = channel ? layout->channel_count - 1 : layout->body_count; // but for ground
   const size_t count = all < COUNT(known) ? all : COUNT(known);
   for (size_t i = 0; i < count; i++) {
     known[i] = channel ? layout->channels[i + 1].name : layout->bodies[i].name;
   }
-  const char *nearest = dea_nearest_name(label->text, known, count);
-  return dea_finding_add(ctx, DEA_ERROR, label->location,
-                         "loading: the device has no %s '%s'%s%s%s", channel ? "channel" : "body",
-                         label->text, nearest != NULL ? "; did you mean '" : "",
-                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+  char hint[DEA_HINT_SIZE];
+  return dea_finding_add(ctx, DEA_ERROR, label->location, "loading: the device has no %s '%s'%s",
+                         channel ? "channel" : "body", label->text,
+                         dea_name_hint(label->text, known, count, hint));
 }
 
 /* Number of the channel with a charge; 0: none, ground, or no such one. */

@@ -45,10 +45,8 @@ static const struct dea_field axis_fields[] = {
     DEA_LABEL_ROW("to", offsetof(struct axis_keys, to), "200 um", "its last value",
                   .absent_text = "one and a half times the design's"),
 };
-static const struct dea_record axis_record = {"parameter", "a number that a map is against",
-                                              axis_fields, COUNT(axis_fields)};
 static const struct dea_field fields[] = {
-    DEA_FIELD_ROW(RECORD, "parameters", AT(parameters), .record = &axis_record,
+    DEA_FIELD_ROW(RECORD, "parameters", AT(parameters), .record = DEA_ROWS(axis_fields),
                   .absent_text = "pre-stretch and thickness of the film",
                   .doc = "numbers of the design, a map each",
                   .example = "[{name: plies.film.thickness, from: 50 um, to: 200 um}]",
@@ -129,15 +127,13 @@ static dea_status add_given(struct dea_context *ctx, const struct numbers *numbe
   struct axis *axis = &plan->axes[plan->count];
   if (number == NULL || number->of == DEA_NUMBER_OF_SUPPLY) {
     const char *known[DEA_NUMBERS_MAX];
-    char why[3 * DEA_NUMBER_KEY_SIZE];
+    char why[DEA_HINT_SIZE + 200], hint[DEA_HINT_SIZE];
     for (size_t i = 1; i < numbers->count; i++) { // the voltage, the first, is the other axis
       known[i - 1] = numbers->at[i].key;
     }
-    const char *nearest =
-        dea_nearest_name(keys->name.text, known, numbers->count > 0 ? numbers->count - 1 : 0);
-    snprintf(why, sizeof why, "'%.60s' is no number of the design that can change%s%s%s",
-             keys->name.text, nearest != NULL ? "; did you mean '" : "",
-             nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+    dea_name_hint(keys->name.text, known, numbers->count > 0 ? numbers->count - 1 : 0, hint);
+    snprintf(why, sizeof why, "'%.60s' is no number of the design that can change%s",
+             keys->name.text, hint);
     return dea_refuse(ctx, keys->name.location, why);
   }
   *axis = (struct axis){.number = *number, .low = 0.5 * number->value, .high = 1.5 * number->value};
@@ -180,12 +176,9 @@ static dea_status find_quantity(struct dea_context *ctx, const struct dea_device
   if (*column >= 0 || label->text[0] == '\0') {
     return DEA_OK;
   }
-  char why[200];
-  const char *nearest;
-  DEA_TRY(ctx, dea_column_nearest(ctx, label->text, &nearest));
-  snprintf(why, sizeof why, "'%.60s' is no quantity%s%.60s%s", label->text,
-           nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-           nearest != NULL ? "'?" : "");
+  char why[DEA_HINT_SIZE + 100], hint[DEA_HINT_SIZE];
+  DEA_TRY(ctx, dea_column_hint(ctx, label->text, NULL, hint));
+  snprintf(why, sizeof why, "'%.60s' is no quantity%s", label->text, hint);
   return dea_refuse(ctx, label->location, why);
 }
 

@@ -68,19 +68,12 @@ static bool is_wanted(const struct dea_study *study, const char *const names[], 
 static dea_status unknown_name(struct dea_context *ctx, const char *name)
 {
   const char *known[STUDIES];
-  struct dea_text all = {.ctx = ctx};
+  char hint[DEA_HINT_SIZE];
   for (size_t k = 0; k < STUDIES; k++) {
     known[k] = studies[k]->name;
-    dea_text_add(&all, "%s%s", k > 0 ? ", " : "", known[k]);
   }
-  const char *nearest = dea_nearest_name(name, known, STUDIES);
-  dea_status status =
-      nearest != NULL ? dea_fail(ctx, DEA_E_ARGUMENT,
-                                 "there is no study '%.60s'; did you mean '%s'?", name, nearest)
-                      : dea_fail(ctx, DEA_E_ARGUMENT, "there is no study '%.60s'; there are: %s",
-                                 name, dea_text_get(&all));
-  dea_text_free(&all);
-  return status;
+  dea_name_hint_list(name, known, STUDIES, NULL, "; there are: ", hint);
+  return dea_fail(ctx, DEA_E_ARGUMENT, "there is no study '%.60s'%s", name, hint);
 }
 
 bool dea_study_known_to(const struct dea_study *study, const struct dea_model_type *type,

@@ -62,13 +62,10 @@ static const struct dea_field given_fields[] = {
     DEA_LABEL_ROW("std", offsetof(struct given, std), "2 um", "its standard uncertainty",
                   .required = true),
 };
-static const struct dea_record given_record = {"parameter", "a number that is uncertain",
-                                               given_fields,
-                                               sizeof given_fields / sizeof given_fields[0]};
 
 static const struct dea_field fields[] = {
     DEA_FIELD_ROW(
-        RECORD, "parameters", AT(parameters), .record = &given_record,
+        RECORD, "parameters", AT(parameters), .record = DEA_ROWS(given_fields),
         .absent_text = "those of the films' laws",
         .doc =
             "what is uncertain, beside the parameters of the films' laws whose uncertainty their "

@@ -1,9 +1,9 @@
 /* VTU and PVD files, read by a small reader of their own. */
-#include "base/bytes.h"
 #include "failing_allocator.h"
 #include "io/vtu.h"
 #include "testing.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>

@@ -113,11 +113,10 @@ static dea_status find_motion(struct dea_context *ctx, const char *monitor, stru
       (m->column >= 0 && strcmp(dea_column_at(ctx, m->column)->si_unit, "m") == 0)) {
     return DEA_OK;
   }
-  const char *nearest;
-  DEA_TRY(ctx, dea_column_nearest(ctx, monitor, &nearest));
-  return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is no displacement of a monitor of the film%s%.60s%s",
-                  monitor, nearest != NULL ? "; did you mean '" : "",
-                  nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+  char hint[DEA_HINT_SIZE];
+  DEA_TRY(ctx, dea_column_hint(ctx, monitor, NULL, hint));
+  return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is no displacement of a monitor of the film%s",
+                  monitor, hint);
 }
 
 /* Height of centre and fibre tips of the last point, where it moves by a monitor. */

@@ -46,22 +46,16 @@ static dea_status find_format(struct dea_context *ctx, const char *format,
                               const struct dea_importer **out)
 {
   const char *names[IMPORTERS];
-  struct dea_text known = {.ctx = ctx};
   for (size_t i = 0; i < IMPORTERS; i++) {
     if (strcmp(all[i]->name, format) == 0) {
-      dea_text_free(&known);
       *out = all[i];
       return DEA_OK;
     }
     names[i] = all[i]->name;
-    dea_text_add(&known, "%s%s", i > 0 ? ", " : "", all[i]->name);
   }
-  const char *nearest = dea_nearest_name(format, names, IMPORTERS);
-  dea_status status = dea_fail(ctx, DEA_E_USAGE, "'%.60s' is not a format; %s%s%s", format,
-                               nearest != NULL ? "did you mean '" : "known are ",
-                               nearest != NULL ? nearest : known.data, nearest != NULL ? "'?" : "");
-  dea_text_free(&known);
-  return status;
+  char hint[DEA_HINT_SIZE];
+  dea_name_hint_list(format, names, IMPORTERS, NULL, "; known are ", hint);
+  return dea_fail(ctx, DEA_E_USAGE, "'%.60s' is not a format%s", format, hint);
 }
 
 static const struct dea_importer *recognise(const char *file, const unsigned char *head,

@@ -129,28 +129,22 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   const char *names[16], *name;
   size_t count = 0;
   bool there = false, moves;
-  struct dea_text list = {.ctx = reader->ctx};
   for (size_t i = 0; (name = protocol->film->type->model(i, &moves)) != NULL; i++) {
     bool is = strcmp(name, raw->model.text) == 0;
     if (is && moves) {
-      dea_text_free(&list);
       return DEA_OK;
     }
     there = there || is;
     if (moves && count < sizeof names / sizeof names[0]) {
-      dea_text_add(&list, "%s%s", count > 0 ? ", " : "", name);
       names[count++] = name;
     }
   }
-  const char *nearest = dea_nearest_name(raw->model.text, names, count);
-  dea_status status = dea_finding_add(
-      reader->ctx, DEA_ERROR, raw->model.location, "%s '%.60s'%s%s%s%s; models with time are: %s",
+  char hint[DEA_HINT_SIZE], list[DEA_HINT_SIZE];
+  return dea_finding_add(
+      reader->ctx, DEA_ERROR, raw->model.location, "%s '%.60s'%s%s; models with time are: %s",
       there ? "model" : "there is no model", raw->model.text,
-      there ? " does not support transients" : "", nearest != NULL ? "; did you mean '" : "",
-      nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "", dea_text_get(&list));
-  status = list.failed ? DEA_E_MEMORY : status;
-  dea_text_free(&list);
-  return status;
+      there ? " does not support transients" : "",
+      dea_name_hint(raw->model.text, names, count, hint), dea_names_list(names, count, list));
 }
 
 static struct dea_sim_settings settings_of(const struct raw *raw)

@@ -2,6 +2,7 @@
 #include "api/own_mesh.h"
 
 #include "base/module.h"
+#include "base/text.h"
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/continuation.h"
@@ -37,9 +38,9 @@ struct dea_solid_object {
   struct dea_solid_continuation *path;
   struct dea_continuation_point point; // of the path
   size_t mode_count;
-  double *mode_square, *mode_shape;
-  size_t channel_count; // ground not counted
-  double *charges;      // voltages, charges, both matrices of capacitances; NULL: not asked for
+  double *mode_square, *mode_shape; // the second in the memory of the first
+  size_t channel_count;             // ground not counted
+  double *charges; // voltages, charges, both matrices of capacitances; NULL: not asked for
   size_t body_count;
   double *body_values; // [4][body_count][3] shift, turn, force, moment
   size_t spring_count;
@@ -256,10 +257,7 @@ static dea_status find_nodes(struct dea_context *ctx, const struct dea_solid_obj
             is_there(object, place, grid->X + 3 * n);
   }
   dea_free(ctx, curve);
-  if (status != DEA_OK) {
-    dea_free(ctx, on);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_free(ctx, on));
   *out = on;
   return DEA_OK;
 }
@@ -394,7 +392,6 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_free(ctx, object->between);
     dea_plane_mesh_destroy(ctx, object->plane);
     dea_free(ctx, object->mode_square);
-    dea_free(ctx, object->mode_shape);
     dea_free(ctx, object->charges);
     dea_free(ctx, object->body_values);
     dea_free(ctx, object);
@@ -459,11 +456,7 @@ static dea_status create(struct dea_context *ctx, const dea_solid_options *spec,
   *out = NULL;
   struct dea_solid_object *object = dea_alloc(ctx, 1, sizeof *object);
   DEA_TRY_MEMORY(object != NULL);
-  dea_status status = fill(ctx, spec, parts, bodies, object);
-  if (status != DEA_OK) {
-    destroy(ctx, object);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, fill(ctx, spec, parts, bodies, object), destroy(ctx, object));
   *out = object;
   return DEA_OK;
 }
@@ -571,11 +564,8 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_solid_object *o
   struct held_spring one = {.body = spec->body, .component = component};
   DEA_TRY(ctx, dea_spring_create(ctx, &options, &one.spring));
   const struct dea_solid_load load = dea_spring_load(one.spring);
-  dea_status status = dea_solid_add_load(ctx, object->solid, &load);
-  if (status != DEA_OK) {
-    dea_spring_destroy(ctx, one.spring);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, dea_solid_add_load(ctx, object->solid, &load),
+               dea_spring_destroy(ctx, one.spring));
   dea_spring_move(one.spring, spec->place);
   springs[object->spring_count++] = one;
   return DEA_OK;
@@ -703,16 +693,11 @@ static dea_status find_charges(struct dea_context *ctx, struct dea_solid_object 
   double *all = dea_alloc(ctx, 2 * n + 2 * n * n, sizeof *all);
   DEA_TRY_MEMORY(all != NULL);
   dea_solid_channel_voltages(object->solid, all);
-  dea_status status = dea_solid_charges(ctx, object->solid, all + n);
-  if (status == DEA_OK) {
-    status = dea_solid_capacitances(ctx, object->solid, true, all + 2 * n);
-  }
-  if (status == DEA_OK) {
-    status = dea_solid_capacitances(ctx, object->solid, false, all + 2 * n + n * n);
-  }
-  if (status != DEA_OK) {
-    dea_free(ctx, all);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  DEA_TRY_ELSE(ctx, dea_solid_charges(ctx, object->solid, all + n), dea_free(ctx, all));
+  for (size_t free = 0; free < 2; free++) {
+    DEA_TRY_ELSE(ctx,
+                 dea_solid_capacitances(ctx, object->solid, free == 0, all + 2 * n + free * n * n),
+                 dea_free(ctx, all));
   }
   object->charges = all;
   return DEA_OK;
@@ -731,19 +716,13 @@ static dea_status modes(struct dea_context *ctx, struct dea_solid_object *object
   if (count == 0 || count > DEA_MODES_MAX) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d modes, not %zu", DEA_MODES_MAX, count);
   }
-  double *square = dea_alloc(ctx, count, sizeof *square);
-  double *shape = dea_alloc(ctx, count * dofs, sizeof *shape);
-  dea_status status = square != NULL && shape != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = dea_solid_modes_lowest(ctx, object->solid, DEA_MODES_BY_MASS, count, square, shape);
-  }
-  if (status != DEA_OK) {
-    dea_free(ctx, square);
-    dea_free(ctx, shape);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  double *square = dea_alloc(ctx, count * (1 + dofs), sizeof *square);
+  DEA_TRY_MEMORY(square != NULL);
+  double *shape = square + count;
+  DEA_TRY_ELSE(ctx,
+               dea_solid_modes_lowest(ctx, object->solid, DEA_MODES_BY_MASS, count, square, shape),
+               dea_free(ctx, square));
   dea_free(ctx, object->mode_square);
-  dea_free(ctx, object->mode_shape);
   for (size_t i = 0; i < count; i++) { // omega^2 -> f, negative where it is unstable
     square[i] = copysign(sqrt(fabs(square[i])), square[i]) / (2 * acos(-1.0));
   }
@@ -776,8 +755,8 @@ static dea_status step(struct dea_context *ctx, struct dea_solid_object *object)
   return DEA_OK;
 }
 
-static const double *array(struct dea_solid_object *object, const char *name, const char **unit,
-                           size_t shape[3])
+static dea_status array(struct dea_context *ctx, struct dea_solid_object *object, const char *name,
+                        dea_array *out)
 {
   size_t n = object->grid->node_count, c = object->channel_count + 1;
   size_t b = object->body_count;
@@ -808,14 +787,20 @@ static const double *array(struct dea_solid_object *object, const char *name, co
       {"capacitance_held_F", "F", charges != NULL ? charges + 2 * c : NULL, {c, c}},
       {"capacitance_F", "F", charges != NULL ? charges + 2 * c + c * c : NULL, {c, c}},
   };
+  const char *known[sizeof all / sizeof all[0]];
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+    known[i] = all[i].name;
     if (strcmp(all[i].name, name) == 0 && all[i].data != NULL) {
-      *unit = all[i].unit;
-      memcpy(shape, all[i].shape, sizeof all[i].shape);
-      return all[i].data;
+      *out =
+          (dea_array){.name = all[i].name, .unit = all[i].unit, .meaning = "", .data = all[i].data};
+      for (int d = 0; d < 3; d++) {
+        out->rank += all[i].shape[d] > 0;
+        out->shape[d] = all[i].shape[d] > 0 ? all[i].shape[d] : 1;
+      }
+      return DEA_OK;
     }
   }
-  return NULL;
+  return dea_unknown_name(ctx, "array", name, known, sizeof all / sizeof all[0]);
 }
 
 static dea_status mesh(struct dea_context *ctx, const struct dea_solid_object *object,
@@ -824,7 +809,8 @@ static dea_status mesh(struct dea_context *ctx, const struct dea_solid_object *o
   return DEA_CHAIN(ctx, dea_solid_volume(ctx, object->solid, out));
 }
 
-static bool number(const struct dea_solid_object *object, const char *name, double *out)
+static dea_status number(struct dea_context *ctx, const struct dea_solid_object *object,
+                         const char *name, double *out)
 {
   const struct {
     const char *name;
@@ -837,13 +823,15 @@ static bool number(const struct dea_solid_object *object, const char *name, doub
       {"load", object->point.load},
       {"arc", object->point.arc},
   };
+  const char *known[sizeof all / sizeof all[0]];
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+    known[i] = all[i].name;
     if (strcmp(all[i].name, name) == 0) {
       *out = all[i].value;
-      return true;
+      return DEA_OK;
     }
   }
-  return false;
+  return dea_unknown_name(ctx, "number", name, known, sizeof all / sizeof all[0]);
 }
 
 extern DEA_MODULE_SYMBOL const struct dea_own_mesh dea_own_mesh;

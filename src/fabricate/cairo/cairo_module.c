@@ -2,7 +2,6 @@
 #include "base/module.h"
 #include "fabricate/cairo_canvas.h"
 
-#include "base/bytes.h"
 #include "base/text.h"
 
 #include <cairo-pdf.h>
@@ -19,13 +18,13 @@ struct dea_canvas {
   enum dea_canvas_format format;
   cairo_surface_t *surface;
   cairo_t *cr;
-  struct dea_bytes bytes;
+  struct dea_text bytes;
 };
 
 static cairo_status_t append_bytes(void *user, const unsigned char *data, unsigned length)
 {
-  struct dea_bytes *bytes = user;
-  dea_bytes_add(bytes, data, length);
+  struct dea_text *bytes = user;
+  dea_text_add_bytes(bytes, data, length);
   return bytes->failed ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
 }
 
@@ -94,7 +93,7 @@ static void destroy(struct dea_canvas *canvas)
   if (canvas != NULL) {
     cairo_destroy(canvas->cr);
     cairo_surface_destroy(canvas->surface);
-    dea_bytes_free(&canvas->bytes);
+    dea_text_free(&canvas->bytes);
     dea_free(canvas->ctx, canvas);
   }
 }
