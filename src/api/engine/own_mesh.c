@@ -806,7 +806,7 @@ static dea_status array(struct dea_context *ctx, struct dea_solid_object *object
 static dea_status mesh(struct dea_context *ctx, const struct dea_solid_object *object,
                        struct dea_field_mesh **out)
 {
-  return DEA_CHAIN(ctx, dea_solid_volume(ctx, object->solid, out));
+  return DEA_CHAIN(ctx, dea_solid_fields(ctx, object->solid, DEA_ALL_PLIES, out));
 }
 
 static dea_status number(struct dea_context *ctx, const struct dea_solid_object *object,
