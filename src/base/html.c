@@ -93,6 +93,10 @@ static void add_converted(struct dea_text *out, const char *conversion, char let
   case 'u':
     dea_text_add(out, conversion, va_arg(*args, size_t));
     break;
+  case 'x':
+    dea_text_add(out, conversion, va_arg(*args, unsigned));
+    break;
+  case 'f':
   case 'g':
     dea_text_add(out, conversion, va_arg(*args, double));
     break;
@@ -114,7 +118,7 @@ void dea_html_add(struct dea_text *out, const char *format, ...)
     c += length;
     if (*c != '\0') {
       char conversion[8] = {0};
-      length = 2 + strcspn(c + 1, "%sdugG");
+      length = 2 + strcspn(c + 1, "%sduxfgG");
       memcpy(conversion, c, length < sizeof conversion ? length : sizeof conversion - 1);
       add_converted(out, conversion, c[length - 1], &args);
       c += length;
