@@ -1,6 +1,7 @@
 #include "base/html.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,6 +78,53 @@ void dea_html_number(struct dea_text *out, double value, int digits)
   } else {
     dea_text_add(out, "%s", number);
   }
+}
+
+/* Adds what a conversion of printf, with its letter at its end, makes of the next argument. */
+static void add_converted(struct dea_text *out, const char *conversion, char letter, va_list *args)
+{
+  switch (letter) {
+  case 's':
+    dea_html_text(out, va_arg(*args, const char *));
+    break;
+  case 'd':
+    dea_text_add(out, conversion, va_arg(*args, int));
+    break;
+  case 'u':
+    dea_text_add(out, conversion, va_arg(*args, size_t));
+    break;
+  case 'x':
+    dea_text_add(out, conversion, va_arg(*args, unsigned));
+    break;
+  case 'f':
+  case 'g':
+    dea_text_add(out, conversion, va_arg(*args, double));
+    break;
+  case 'G':
+    dea_html_number(out, va_arg(*args, double), conversion[2] - '0');
+    break;
+  default:
+    dea_text_add(out, "%c", letter);
+  }
+}
+
+void dea_html_add(struct dea_text *out, const char *format, ...)
+{
+  va_list args;
+  va_start(args, format);
+  for (const char *c = format; *c != '\0';) {
+    size_t length = strcspn(c, "%");
+    dea_text_add(out, "%.*s", (int)length, c);
+    c += length;
+    if (*c != '\0') {
+      char conversion[8] = {0};
+      length = 2 + strcspn(c + 1, "%sduxfgG");
+      memcpy(conversion, c, length < sizeof conversion ? length : sizeof conversion - 1);
+      add_converted(out, conversion, c[length - 1], &args);
+      c += length;
+    }
+  }
+  va_end(args);
 }
 
 void dea_html_cell(struct dea_text *out, double value, int digits)

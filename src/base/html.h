@@ -6,6 +6,10 @@
 /* Adds text so that a browser shows it as it is, in elements and in quoted attributes. Bytes that
  * are not UTF-8 and control signs become U+FFFD. NULL adds nothing. */
 void dea_html_text(struct dea_text *out, const char *text);
+/* As dea_text_add, but what comes by %s arrives as text like that of dea_html_text, and %.3G is a
+ * number like that of dea_html_number with three digits. Of printf's others it knows %%, %d, %zu,
+ * %x, %f and %g. */
+void dea_html_add(struct dea_text *out, const char *format, ...) DEA_PRINTF(2, 3);
 /* "<tag>text</tag>"; tag with its attributes is ours: "td class=\"n\"". */
 void dea_html_element(struct dea_text *out, const char *tag, const char *text);
 /* A number with so many significant digits and a minus sign; a dash when it is none. */

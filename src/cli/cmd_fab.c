@@ -12,12 +12,6 @@ struct request {
   bool force, drawing, json;
 };
 
-static dea_status add_name(void *array, const char *name)
-{
-  json_array_append_new(array, json_string(name));
-  return DEA_OK;
-}
-
 /* What one actuator needs; what the design does not say is left out. */
 static json_t *amounts_json(const struct dea_workshop *w)
 {
@@ -51,7 +45,10 @@ static void print_json(const struct dea_workshop *w, const struct request *reque
     }
     json_array_append_new(parts, row);
   }
-  dea_workshop_files(w, options, add_name, files);
+  char name[DEA_WORKSHOP_NAME_SIZE];
+  for (size_t i = 0; dea_workshop_file(w, options, i, name); i++) {
+    json_array_append_new(files, json_string(name));
+  }
   json_t *json = json_object();
   dea_json_add_text(json, "design", request->design);
   dea_json_add_text(json, "folder", directory);

@@ -13,17 +13,15 @@
 
 enum handle { LAYERS = 2, MODEL_RECORD = 0xA, FIRST_LAYER = 0x1A, FIRST_ENTITY = 0x30 };
 
-/* Names and looks of the layers of a file. */
-struct layers {
-  const char *const *name; // [count]
-  const int *colour;
-  const bool *plotted;
-  size_t count;
+struct layer {
+  const char *name;
+  int colour;
+  bool plotted;
 };
 
 struct file {
   struct dea_text *text;
-  unsigned handle; // of the next entity
+  unsigned handle; // of the next entity; once all are written, the first that is free
   int decimals;    // of lengths in mm
 };
 
@@ -94,7 +92,7 @@ static void begin_entity(struct file *file, const char *type, unsigned own, unsi
   "|100 AcDbEntity|8 0|100 AcDbBlockEnd|"
 
 /* In millimetres, metric. */
-static void write_header(struct file *file, const double box_m[4], unsigned handles)
+static void write_header(struct file *file, const double box_m[4])
 {
   groups(file, "999 libdea " DEA_VERSION "|0 SECTION|2 HEADER|9 $ACADVER|1 AC1015|"
                "9 $DWGCODEPAGE|3 ANSI_1252|9 $INSUNITS|70 4|9 $MEASUREMENT|70 1|9 $EXTMIN|");
@@ -104,7 +102,7 @@ static void write_header(struct file *file, const double box_m[4], unsigned hand
   point(file, 10, box_m[2], box_m[3]);
   length(file, 30, 0);
   group(file, 9, "$HANDSEED");
-  handle(file, 5, handles);
+  handle(file, 5, file->handle);
   group(file, 0, "ENDSEC");
 }
 
@@ -119,33 +117,34 @@ static void write_viewport(struct file *file, const double box_m[4])
   group(file, 0, "ENDTAB");
 }
 
-static void write_layers(struct file *file, const struct layers *layers)
+static void write_layers(struct file *file, const struct layer *layers, size_t count)
 {
   dea_text_add(file->text, "  0\nTABLE\n  2\nLAYER\n  5\n%X\n330\n0\n", LAYERS);
   group(file, 100, "AcDbSymbolTable");
-  number(file, 70, (int)layers->count + 1);
+  number(file, 70, (int)count + 1);
   groups(file, RECORD("LAYER", "12", "2", "AcDbLayerTableRecord", "0") "70 0|62 7|6 Continuous|");
-  for (size_t i = 0; i < layers->count; i++) {
+  for (size_t i = 0; i < count; i++) {
     group(file, 0, "LAYER");
     handle(file, 5, FIRST_LAYER + (unsigned)i);
     handle(file, 330, LAYERS);
     groups(file, "100 AcDbSymbolTableRecord|100 AcDbLayerTableRecord|");
-    group(file, 2, layers->name[i]);
+    group(file, 2, layers[i].name);
     number(file, 70, 0);
-    number(file, 62, layers->colour[i]);
+    number(file, 62, layers[i].colour);
     group(file, 6, "Continuous");
-    number(file, 290, layers->plotted[i]);
+    number(file, 290, layers[i].plotted);
   }
   group(file, 0, "ENDTAB");
 }
 
-static void write_tables(struct file *file, const double box_m[4], const struct layers *layers)
+static void write_tables(struct file *file, const double box_m[4], const struct layer *layers,
+                         size_t count)
 {
   groups(file, "0 SECTION|2 TABLES|");
   write_viewport(file, box_m);
   groups(file, TABLE("LTYPE", "4", "3") LINE_TYPE("14", "ByBlock", "") LINE_TYPE(
                    "15", "ByLayer", "") LINE_TYPE("16", "Continuous", "Solid line") "0 ENDTAB|");
-  write_layers(file, layers);
+  write_layers(file, layers, count);
   groups(file, TABLE("STYLE", "3", "1")
                    RECORD("STYLE", "13", "3", "AcDbTextStyleTableRecord",
                           "Standard") "70 0|40 0.0|41 1.0|50 0.0|71 0|42 2.5|3 txt|4 |0 ENDTAB|");
@@ -169,21 +168,28 @@ static const char objects[] = // after the drawing
 
 /* ---- the drawing ---- */
 
+/* The whole file around the entities that were written to file->text, which is freed. */
+static dea_status write_file(struct file *file, const double box_m[4], const struct layer *layers,
+                             size_t count, struct dea_text *out)
+{
+  struct dea_text *entities = file->text;
+  file->text = out;
+  write_header(file, box_m);
+  write_tables(file, box_m, layers, count);
+  groups(file, "0 SECTION|2 ENTITIES|");
+  dea_text_add(out, "%s", dea_text_get(entities));
+  group(file, 0, "ENDSEC");
+  groups(file, objects);
+  out->failed |= entities->failed;
+  dea_text_free(entities);
+  return out->failed ? DEA_E_MEMORY : DEA_OK;
+}
+
 // of a sheet, by enum dea_layer
-static const char *const sheet_names[] = {
-#define LAYER_NAME(name, meaning, dxf, screen) #name,
-    DEA_LAYER_LIST(LAYER_NAME)
-#undef LAYER_NAME
-};
-static const int sheet_colours[] = {
-#define LAYER_COLOUR(name, meaning, dxf, screen) dxf,
-    DEA_LAYER_LIST(LAYER_COLOUR)
-#undef LAYER_COLOUR
-};
-static const bool sheet_plotted[] = {
-#define LAYER_PLOTTED(name, meaning, dxf, screen) DEA_LAYER_##name != DEA_LAYER_NOTE,
-    DEA_LAYER_LIST(LAYER_PLOTTED)
-#undef LAYER_PLOTTED
+static const struct layer sheet_layers[] = {
+#define LAYER_ROW(name, meaning, dxf, screen) {#name, dxf, DEA_LAYER_##name != DEA_LAYER_NOTE},
+    DEA_LAYER_LIST(LAYER_ROW)
+#undef LAYER_ROW
 };
 
 static void begin_drawn(struct file *file, const char *type, const char *subclass,
@@ -192,14 +198,15 @@ static void begin_drawn(struct file *file, const char *type, const char *subclas
   begin_entity(file, type, file->handle++, MODEL_RECORD, layer, subclass);
 }
 
-static void write_polyline(struct file *file, const char *layer, bool closed,
-                           const struct dea_vertex *v, size_t count, const double at[2])
+static void write_polyline(struct file *file, const char *layer, const struct dea_contour *path,
+                           const double at[2])
 {
+  const struct dea_vertex *v = path->vertex;
   begin_drawn(file, "LWPOLYLINE", "AcDbPolyline", layer);
-  number(file, 90, (int)count);
-  number(file, 70, closed);
+  number(file, 90, (int)path->count);
+  number(file, 70, path->closed);
   length(file, 43, 0);
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < path->count; i++) {
     point(file, 10, at[0] + v[i].x_m, at[1] + v[i].y_m);
     if (v[i].bulge != 0) {
       dea_text_add(file->text, " 42\n%.15f\n", v[i].bulge);
@@ -207,17 +214,14 @@ static void write_polyline(struct file *file, const char *layer, bool closed,
   }
 }
 
-static void write_path(struct file *file, const struct dea_part_contour *contour,
-                       const struct dea_vertex *v, size_t count, const double at[2])
+/* A circle of two halves. */
+static void write_circle(struct file *file, const char *layer, const struct dea_vertex *v,
+                         const double at[2])
 {
-  if (contour->circle) {
-    begin_drawn(file, "CIRCLE", "AcDbCircle", sheet_names[contour->layer]);
-    point(file, 10, at[0] + 0.5 * (v[0].x_m + v[1].x_m), at[1] + 0.5 * (v[0].y_m + v[1].y_m));
-    length(file, 30, 0);
-    length(file, 40, 0.5 * hypot(v[1].x_m - v[0].x_m, v[1].y_m - v[0].y_m));
-    return;
-  }
-  write_polyline(file, sheet_names[contour->layer], contour->closed, v, count, at);
+  begin_drawn(file, "CIRCLE", "AcDbCircle", layer);
+  point(file, 10, at[0] + 0.5 * (v[0].x_m + v[1].x_m), at[1] + 0.5 * (v[0].y_m + v[1].y_m));
+  length(file, 30, 0);
+  length(file, 40, 0.5 * hypot(v[1].x_m - v[0].x_m, v[1].y_m - v[0].y_m));
 }
 
 /* Letters beyond ASCII are written as \\U+XXXX. */
@@ -238,7 +242,7 @@ static void add_escaped(struct dea_text *out, const char *text)
 static void write_words(struct file *file, enum dea_layer layer, double x, double y, double height,
                         bool centred, const char *text)
 {
-  begin_drawn(file, "TEXT", "AcDbText", sheet_names[layer]);
+  begin_drawn(file, "TEXT", "AcDbText", sheet_layers[layer].name);
   point(file, 10, x, y);
   length(file, 30, 0);
   length(file, 40, height);
@@ -257,11 +261,17 @@ static dea_status write_copy(struct file *file, const struct dea_workshop *works
                              const struct dea_part *part, const double at[2])
 {
   for (size_t i = 0; i < part->contour_count; i++) {
-    struct dea_vertex *path;
-    size_t count;
-    DEA_TRY(part->ctx, dea_workshop_path(workshop, part, i, &path, &count));
-    write_path(file, &part->contour[i], path, count, at);
-    dea_free(part->ctx, path);
+    struct dea_context *ctx = part->memory->ctx;
+    const char *layer = sheet_layers[part->contour[i].layer].name;
+    struct dea_vertex *memory;
+    struct dea_contour path;
+    DEA_TRY(ctx, dea_workshop_path(workshop, part, i, &memory, &path));
+    if (part->contour[i].circle) {
+      write_circle(file, layer, path.vertex, at);
+    } else {
+      write_polyline(file, layer, &path, at);
+    }
+    dea_free(ctx, memory);
   }
   for (size_t i = 0; i < part->text_count; i++) {
     const struct dea_part_text *text = &part->text[i];
@@ -294,15 +304,14 @@ static dea_status write_entities(struct file *file, const struct dea_workshop *w
 {
   const struct dea_sheet_layout *layout = &workshop->layout[index];
   const struct dea_part *part = &workshop->part[index];
-  const struct dea_part_contour edge = {DEA_LAYER_NOTE, true, false, 0, 4};
   const struct dea_vertex corners[4] = {{.x_m = 0, .y_m = 0},
                                         {.x_m = layout->width_m, .y_m = 0},
                                         {.x_m = layout->width_m, .y_m = layout->height_m},
                                         {.x_m = 0, .y_m = layout->height_m}};
+  const struct dea_contour edge = {corners, 4, true};
   const double origin[2] = {0, 0};
-  struct dea_text words = {.ctx = part->ctx};
-  groups(file, "0 SECTION|2 ENTITIES|");
-  write_path(file, &edge, corners, 4, origin);
+  struct dea_text words = {.ctx = part->memory->ctx};
+  write_polyline(file, sheet_layers[DEA_LAYER_NOTE].name, &edge, origin);
   dea_sheet_labels(workshop, index, &words);
   const double height = fmin(2.5e-3, layout->width_m / 130); // so that they fit
   write_words(file, DEA_LAYER_NOTE, 2e-3, -2 * height, height, false, dea_text_get(&words));
@@ -313,65 +322,48 @@ static dea_status write_entities(struct file *file, const struct dea_workshop *w
     dea_sheet_place(layout, copy, at);
     status = write_copy(file, workshop, part, at);
   }
-  group(file, 0, "ENDSEC");
   return status;
-}
-
-/* Number of entities, for the handles. */
-static unsigned count_entities(const struct dea_workshop *workshop, size_t index)
-{
-  const struct dea_part *part = &workshop->part[index];
-  return 2 + (unsigned)workshop->layout[index].count *
-                 (unsigned)(part->contour_count + part->text_count);
 }
 
 dea_status dea_dxf_write(const struct dea_workshop *workshop, size_t index, struct dea_text *out)
 {
-  const struct layers layers = {sheet_names, sheet_colours, sheet_plotted, DEA_LAYER_COUNT};
   const struct dea_sheet_layout *layout = &workshop->layout[index];
   const double box[4] = {0, 0, layout->width_m, layout->height_m};
-  struct file file = {out, FIRST_ENTITY, 9}; // to the picometre
-  write_header(&file, box, FIRST_ENTITY + count_entities(workshop, index));
-  write_tables(&file, box, &layers);
-  dea_status status = write_entities(&file, workshop, index);
-  groups(&file, objects);
-  return status == DEA_OK && out->failed ? DEA_E_MEMORY : status;
+  struct dea_text entities = {.ctx = out->ctx};
+  struct file file = {&entities, FIRST_ENTITY, 9}; // to the picometre
+  const dea_status status = write_entities(&file, workshop, index);
+  const dea_status written = write_file(&file, box, sheet_layers, DEA_LAYER_COUNT, out);
+  return status == DEA_OK ? written : status;
 }
 
 // The shapes of a layout -------------------------------------------------------------------------
 
-static void note(bool *used, size_t region)
+/* Whether some part is of a region. */
+static bool is_used(const struct dea_layout *l, size_t region)
 {
-  if (region != DEA_LAYOUT_NONE) {
-    used[region] = true;
-  }
-}
-
-/* Regions that some part is of. */
-static void find_used(const struct dea_layout *l, bool *used)
-{
+  bool used = false;
   for (size_t i = 0; i < l->ply_count; i++) {
-    note(used, l->plies[i].region);
+    used |= l->plies[i].region == region;
   }
   for (size_t i = 0; i < l->electrode_count; i++) {
-    note(used, l->electrodes[i].region);
+    used |= l->electrodes[i].region == region;
   }
   for (size_t i = 0; i < l->support_count; i++) {
-    note(used, l->supports[i].region);
-    note(used, l->supports[i].within);
+    used |= l->supports[i].region == region || l->supports[i].within == region;
   }
   for (size_t i = 0; i < l->body_count; i++) {
-    note(used, l->bodies[i].region);
+    used |= l->bodies[i].region == region;
   }
   for (size_t i = 0; i < l->pressure_count; i++) {
-    note(used, l->pressures[i].region);
+    used |= l->pressures[i].region == region;
   }
   for (size_t i = 0; i < l->contact_count; i++) {
-    note(used, l->contacts[i].region);
+    used |= l->contacts[i].region == region;
   }
   for (size_t i = 0; i < l->monitor_count; i++) {
-    note(used, l->monitors[i].region);
+    used |= l->monitors[i].region == region;
   }
+  return used;
 }
 
 /* The name of a layer: letters of ASCII but for those that DXF keeps for itself. */
@@ -385,56 +377,34 @@ static const char *layer_of(struct dea_arena *memory, const char *name)
   return out != NULL ? out : "";
 }
 
-static size_t write_shapes(struct file *file, const struct dea_layout *l, const bool *used,
-                           const struct layers *layers)
-{
-  const double origin[2] = {0, 0};
-  size_t layer = 0, count = 0;
-  for (size_t i = 0; i < l->region_count; i++) {
-    for (size_t k = 0; used[i] && k < l->regions[i].region.contour_count; k++, count++) {
-      const struct dea_contour contour = dea_region_contour(&l->regions[i].region, k);
-      if (file != NULL) {
-        write_polyline(file, layers->name[layer], true, contour.vertex, contour.count, origin);
-      }
-    }
-    layer += used[i] ? 1 : 0;
-  }
-  return count;
-}
-
 dea_status dea_dxf_write_layout(const struct dea_layout *layout, struct dea_text *out)
 {
+  const double origin[2] = {0, 0};
   struct dea_arena memory = {.ctx = out->ctx};
-  size_t n = layout->region_count;
-  bool *used = dea_arena_alloc(&memory, n, sizeof *used);
-  bool *plotted = dea_arena_alloc(&memory, n, sizeof *plotted);
-  int *colour = dea_arena_alloc(&memory, n, sizeof *colour);
-  const char **name = dea_arena_alloc(&memory, n, sizeof *name);
+  struct layer *layers = dea_arena_alloc(&memory, layout->region_count, sizeof *layers);
+  struct dea_text entities = {.ctx = out->ctx};
+  struct file file = {&entities, FIRST_LAYER, 12}; // to the femtometre
   double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-  struct layers layers = {name, colour, plotted, 0};
-  if (memory.failed) {
-    dea_arena_free(&memory);
-    return DEA_E_MEMORY;
+  size_t count = 0;
+  for (size_t i = 0; i < layout->region_count; i++) {
+    file.handle += is_used(layout, i) ? 1 : 0; // those of the layers come first
   }
-  find_used(layout, used);
-  for (size_t i = 0; i < n; i++) {
-    if (used[i]) {
-      name[layers.count] = layer_of(&memory, layout->regions[i].name);
-      colour[layers.count] = 1 + (int)(layers.count % 7);
-      plotted[layers.count++] = true;
-      dea_region_grow_box(&layout->regions[i].region, box);
+  file.handle = file.handle > FIRST_ENTITY ? file.handle : FIRST_ENTITY;
+  for (size_t i = 0; i < layout->region_count && layers != NULL; i++) {
+    const struct dea_region *region = &layout->regions[i].region;
+    if (is_used(layout, i)) {
+      layers[count] =
+          (struct layer){layer_of(&memory, layout->regions[i].name), 1 + (int)(count % 7), true};
+      for (size_t k = 0; k < region->contour_count; k++) {
+        const struct dea_contour contour = dea_region_contour(region, k);
+        write_polyline(&file, layers[count].name, &contour, origin);
+      }
+      dea_region_grow_box(region, box);
+      count++;
     }
   }
-  unsigned first = FIRST_LAYER + (unsigned)layers.count;
-  first = first > FIRST_ENTITY ? first : FIRST_ENTITY;
-  struct file file = {out, first, 12}; // to the femtometre
-  write_header(&file, box, first + (unsigned)write_shapes(NULL, layout, used, &layers));
-  write_tables(&file, box, &layers);
-  groups(&file, "0 SECTION|2 ENTITIES|");
-  write_shapes(&file, layout, used, &layers);
-  group(&file, 0, "ENDSEC");
-  groups(&file, objects);
-  dea_status status = memory.failed || out->failed ? DEA_E_MEMORY : DEA_OK;
+  out->failed |= memory.failed;
+  const dea_status status = write_file(&file, box, layers, count, out);
   dea_arena_free(&memory);
   return status;
 }

@@ -15,8 +15,8 @@ dea_status dea_workshop_prepare(struct dea_context *ctx, const struct dea_worksh
 /* Writes all files, each as a whole. */
 dea_status dea_workshop_write(struct dea_context *ctx, const struct dea_workshop *workshop,
                               const char *directory, const struct dea_workshop_options *options);
-/* Calls for the name of each file, in their order. */
-typedef dea_status (*dea_file_sink)(void *user, const char *name);
-dea_status dea_workshop_files(const struct dea_workshop *workshop,
-                              const struct dea_workshop_options *options, dea_file_sink sink,
-                              void *user);
+/* Name of the i-th file, in the order of writing; false beyond the last. */
+enum { DEA_WORKSHOP_NAME_SIZE = DEA_PART_NAME_SIZE + 8 };
+bool dea_workshop_file(const struct dea_workshop *workshop,
+                       const struct dea_workshop_options *options, size_t i,
+                       char out[DEA_WORKSHOP_NAME_SIZE]);

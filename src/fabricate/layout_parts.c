@@ -46,67 +46,57 @@ struct sheet {
   double map[2][2]; // of a distance from the plan's origin, in the flat film
 };
 
-static const char *keep(struct dea_workshop *w, const char *format, ...) DEA_PRINTF(2, 3);
-static const char *keep(struct dea_workshop *w, const char *format, ...)
-{
-  va_list args, again;
-  va_start(args, format);
-  va_copy(again, args);
-  size_t length = (size_t)vsnprintf(NULL, 0, format, args);
-  va_end(args);
-  char *text = dea_arena_alloc(&w->memory, length + 1, 1);
-  if (text != NULL) {
-    vsnprintf(text, length + 1, format, again);
-  }
-  va_end(again);
-  return text != NULL ? text : "";
-}
-
 /* "KIND-NAME", with the number of the ply or body where the name of another one would give the
  * same; a ply may bring its own. */
-static const char *name_of(struct dea_workshop *w, enum dea_part_kind kind, size_t of)
+static void write_name(const struct dea_layout *l, enum dea_part_kind kind, size_t of,
+                       char out[DEA_PART_NAME_SIZE])
 {
   static const char *const words[] = {"blank", "stencil", "stencil", "ply",
                                       "body",  "frame",   "template"};
   static const char *const sides[] = {[DEA_PART_BOTTOM] = "-bottom", [DEA_PART_TOP] = "-top"};
   const char *word = words[kind], *side = kind <= DEA_PART_TOP && sides[kind] ? sides[kind] : "";
-  const struct dea_layout *l = w->plan.layout;
   const bool body = kind == DEA_PART_BODY;
-  char slug[32], other[32];
+  char slug[32], other[32], number[24] = "";
   bool alone = true;
-  if (kind >= DEA_PART_FRAME) {
-    return word;
-  }
-  if (!body && l->plies[of].part != NULL) {
-    return side[0] != '\0' ? keep(w, "%s%s", word, side) : l->plies[of].part;
+  const bool single = kind >= DEA_PART_FRAME;
+  if (single || (!body && l->plies[of].part != NULL)) {
+    snprintf(out, DEA_PART_NAME_SIZE, "%s%s", single || side[0] != '\0' ? word : l->plies[of].part,
+             side);
+    return;
   }
   write_slug(body ? l->bodies[of].name : l->plies[of].name, slug);
   for (size_t i = 0; i < (body ? l->body_count : l->ply_count); i++) {
     write_slug(body ? l->bodies[i].name : l->plies[i].name, other);
     alone &= i == of || strcmp(slug, other) != 0;
   }
-  return alone ? keep(w, "%s-%s%s", word, slug, side)
-               : keep(w, "%s-%s-%zu%s", word, slug, of + 1, side);
+  if (!alone) {
+    snprintf(number, sizeof number, "-%zu", of + 1);
+  }
+  snprintf(out, DEA_PART_NAME_SIZE, "%s-%s%.9s%s", word, slug, number, side);
 }
 
 /* Starts the next part: of the flat film, or a blank or stencil of the unstretched one of its ply,
  * which is seen from below where that face is printed. */
+DEA_PRINTF(4, 5)
 static struct sheet start(struct dea_workshop *w, enum dea_part_kind kind, size_t of,
-                          const char *title)
+                          const char *title, ...)
 {
   struct sheet s = {.w = w, .layout = w->plan.layout, .map = {{1, 0}, {0, 1}}};
   const bool below = kind == DEA_PART_BOTTOM;
   s.part = &w->part[w->count++];
-  *s.part = (struct dea_part){.ctx = w->memory.ctx,
+  *s.part = (struct dea_part){.memory = &w->memory,
                               .kind = kind,
                               .of = of,
-                              .name = name_of(w, kind, of),
-                              .title = title,
                               .seen = below ? "seen from below" : "seen from above",
                               .state = DEA_STRETCHED,
                               .flat = !w->plan.stretched,
                               .quantity = 1,
                               .mirrored = below};
+  write_name(s.layout, kind, of, s.part->name);
+  va_list args;
+  va_start(args, title);
+  vsnprintf(s.part->title, sizeof s.part->title, title, args);
+  va_end(args);
   if (kind <= DEA_PART_TOP && dea_ply_is_stretched(&s.layout->plies[of])) {
     double(*F)[2] = s.part->stretch;
     dea_ply_stretch(&s.layout->plies[of], F);
@@ -179,9 +169,9 @@ static size_t room_for(const struct dea_contour *contour)
 static void add_contour(const struct sheet *s, const struct dea_contour *contour,
                         enum dea_layer layer)
 {
-  struct dea_part *part = s->part;
-  struct dea_region mapped = {.ctx = part->ctx};
-  struct dea_vertex *v = dea_alloc(part->ctx, room_for(contour), sizeof *v);
+  struct dea_arena *memory = s->part->memory;
+  struct dea_region mapped = {.ctx = memory->ctx};
+  struct dea_vertex *v = dea_alloc(memory->ctx, room_for(contour), sizeof *v);
   size_t count = 0;
   for (size_t i = 0; v != NULL && i < contour->count; i++) {
     const struct dea_piece piece = dea_contour_piece(contour, i);
@@ -192,14 +182,13 @@ static void add_contour(const struct sheet *s, const struct dea_contour *contour
     (dea_contour_area_m2(&made) > 0 ? dea_region_add : dea_region_add_reversed)(&mapped, v, count);
   }
   if (v == NULL || mapped.failed) {
-    part->failed = true;
+    memory->failed = true;
   } else {
-    const struct dea_vertex *to = mapped.vertex;
-    bool circle = count == 2 && fabs(to[0].bulge - 1) < 1e-12 && fabs(to[1].bulge - 1) < 1e-12;
-    dea_part_add(part, layer, to, count, circle);
+    const struct dea_contour made = dea_region_contour(&mapped, 0);
+    dea_part_add(s->part, layer, &made);
   }
   dea_region_free(&mapped);
-  dea_free(part->ctx, v);
+  dea_free(memory->ctx, v);
 }
 
 /* Outlines on one layer, holes on another. */
@@ -285,8 +274,10 @@ static void add_line(const struct sheet *s, double x0, double y0, double x1, dou
   double a[2], b[2];
   place(s, from, a);
   place(s, to, b);
-  dea_part_line(s->part, DEA_LAYER_MARK, a[0], a[1], b[0], b[1],
-                s->w->plan.design->fabrication.grid_spacing.length.location);
+  const struct dea_location at = s->w->plan.design->fabrication.grid_spacing.length.location;
+  const struct dea_vertex ends[2] = {{a[0], a[1], 0, at}, {b[0], b[1], 0, at}};
+  const struct dea_contour line = {ends, 2, false};
+  dea_part_add(s->part, DEA_LAYER_MARK, &line);
 }
 
 /* Crosses of a grid, on the film beyond the opening. */
@@ -316,12 +307,12 @@ static void measure(struct dea_part *part, size_t first, enum dea_layer layer, c
 {
   double seen[6][2];
   size_t count = 0;
-  for (size_t i = first; i < part->contour_count && count < 6 && !part->failed; i++) {
-    const struct dea_contour contour = dea_part_contour_get(part, i);
+  for (size_t i = first; i < part->contour_count && count < 6; i++) {
+    const struct dea_contour contour = part->contour[i].path;
     double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     dea_contour_grow_box(&contour, box);
     const double side[2] = {box[2] - box[0], box[3] - box[1]};
-    bool known = part->contour[i].layer != layer || !part->contour[i].closed;
+    bool known = part->contour[i].layer != layer || !contour.closed;
     for (size_t k = 0; k < count && !known; k++) {
       known = fabs(seen[k][0] - side[0]) < 1e-7 && fabs(seen[k][1] - side[1]) < 1e-7;
     }
@@ -344,10 +335,7 @@ static void measure(struct dea_part *part, size_t first, enum dea_layer layer, c
 static void measure_and_drop(struct dea_part *part, size_t first, const char *what)
 {
   measure(part, first, DEA_LAYER_NOTE, what);
-  if (!part->failed && first < part->contour_count) {
-    part->vertex_count = part->contour[first].first;
-    part->contour_count = first;
-  }
+  part->contour_count = first;
 }
 
 /* A length in the flat film, from the plan's origin. */
@@ -377,8 +365,7 @@ static void measure_box(struct dea_part *part, const char *what)
   double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
   for (size_t i = 0; i < part->contour_count; i++) {
     if (part->contour[i].layer == DEA_LAYER_CUT_OUTER) {
-      const struct dea_contour contour = dea_part_contour_get(part, i);
-      dea_contour_grow_box(&contour, box);
+      dea_contour_grow_box(&part->contour[i].path, box);
     }
   }
   dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[2], box[1], what, nowhere);
@@ -391,10 +378,8 @@ static void add_blank(struct dea_workshop *w, size_t ply)
 {
   const struct dea_layout *l = w->plan.layout;
   const struct dea_fabrication *f = &w->plan.design->fabrication;
-  struct sheet s =
-      start(w, DEA_PART_BLANK, ply,
-            keep(w, "Film '%.60s'%s", l->plies[ply].name,
-                 dea_ply_is_stretched(&l->plies[ply]) ? " before it is stretched" : ""));
+  struct sheet s = start(w, DEA_PART_BLANK, ply, "Film '%.60s'%s", l->plies[ply].name,
+                         dea_ply_is_stretched(&l->plies[ply]) ? " before it is stretched" : "");
   s.part->quantity = dea_ply_count_like(l, ply);
   add_grid(&s);
   add_marks(&s, DEA_LAYER_MARK);
@@ -462,8 +447,8 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
     return status;
   }
   struct sheet s = start(w, top ? DEA_PART_TOP : DEA_PART_BOTTOM, ply,
-                         keep(w, "Stencil of the electrodes on the %s of '%.60s'",
-                              top ? "top" : "bottom", l->plies[ply].name));
+                         "Stencil of the electrodes on the %s of '%.60s'", top ? "top" : "bottom",
+                         l->plies[ply].name);
   add_region(&s, &openings, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
   size_t pieces = dea_part_pieces(s.part);
   measure_ink(&s, ply, top);
@@ -539,7 +524,7 @@ static void add_frame(struct dea_workshop *w)
 {
   const struct dea_fabrication *f = &w->plan.design->fabrication;
   const enum dea_layer inner = DEA_LAYER_CUT_INNER, outer = DEA_LAYER_CUT_OUTER;
-  struct sheet s = start(w, DEA_PART_FRAME, 0,
+  struct sheet s = start(w, DEA_PART_FRAME, 0, "%s",
                          w->plan.held ? "Frame, to which the edge of the film is bonded"
                                       : "Frame that holds the film until it is cut");
   if (w->plan.held) {
@@ -572,8 +557,8 @@ static dea_status add_holder(struct dea_workshop *w, size_t ply)
   status = status == DEA_OK ? dea_region_combine(ctx, DEA_DIFFERENCE, &inside, &pieces, &opening)
                             : status;
   if (status == DEA_OK) {
-    struct sheet s = start(w, DEA_PART_OUTLINE, ply,
-                           keep(w, "Ply '%.60s' in its holder", plan->layout->plies[ply].name));
+    struct sheet s =
+        start(w, DEA_PART_OUTLINE, ply, "Ply '%.60s' in its holder", plan->layout->plies[ply].name);
     const struct dea_location width = plan->design->fibres.width_m.location;
     const double outer = plan->piece_outer_m, half = 0.5 * d->fibre_width_m;
     add_region(&s, &opening, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
@@ -595,9 +580,9 @@ static dea_status add_holder(struct dea_workshop *w, size_t ply)
 
 /* Pieces on a carrier, which has the marks. */
 static void add_outline(struct dea_workshop *w, enum dea_part_kind kind, size_t of,
-                        const char *title, size_t region)
+                        const char *what, const char *name, const char *more, size_t region)
 {
-  struct sheet s = start(w, kind, of, title);
+  struct sheet s = start(w, kind, of, "%s '%.60s'%s", what, name, more);
   s.part->quantity = kind == DEA_PART_BODY ? 1 : dea_ply_count_like(s.layout, of);
   add_region(&s, &s.layout->regions[region].region, DEA_LAYER_CUT_OUTER, DEA_LAYER_CUT_INNER);
   if (dea_part_pieces(s.part) > 1) {
@@ -617,15 +602,12 @@ static dea_status add_plies_and_bodies(struct dea_workshop *w)
       DEA_TRY(w->memory.ctx, add_holder(w, i));
     } else if (dea_ply_like(l, i) == i && dea_ply_is_cut(ply) && !dea_ply_is_held(l, i)) {
       const bool film = dea_ply_is_stretched(ply);
-      add_outline(w, DEA_PART_OUTLINE, i,
-                  keep(w, "%s '%.60s'%s", film ? "Outline of the film" : "Ply", ply->name,
-                       film ? ", cut once it is stretched and bonded" : ""),
-                  ply->region);
+      add_outline(w, DEA_PART_OUTLINE, i, film ? "Outline of the film" : "Ply", ply->name,
+                  film ? ", cut once it is stretched and bonded" : "", ply->region);
     }
   }
   for (size_t i = 0; i < l->body_count; i++) {
-    add_outline(w, DEA_PART_BODY, i, keep(w, "Rigid body '%.60s'", l->bodies[i].name),
-                l->bodies[i].region);
+    add_outline(w, DEA_PART_BODY, i, "Rigid body", l->bodies[i].name, "", l->bodies[i].region);
   }
   return DEA_OK;
 }

@@ -43,8 +43,7 @@ static void add_contours(const struct dea_paper *paper, const struct dea_part *p
 {
   for (size_t i = 0; i < part->contour_count; i++) {
     if (part->contour[i].layer == layer) {
-      const struct dea_contour contour = dea_part_contour_get(part, i);
-      paper->type->contour(paper->canvas, &contour, millimetres, x, y);
+      paper->type->contour(paper->canvas, &part->contour[i].path, millimetres, x, y);
     }
   }
 }
@@ -64,7 +63,7 @@ static void draw_part(const struct dea_paper *paper, const struct dea_part *part
   for (size_t i = 0; i < part->text_count; i++) {
     const struct dea_part_text *text = &part->text[i];
     paper->type->text(paper->canvas, x + 1e3 * text->x_m, y + 1e3 * text->y_m,
-                      1.4e3 * text->height_m, 0, DEA_ALIGN_CENTRE, false, 0x2a6f3a, text->text);
+                      1.4e3 * text->height_m, DEA_ALIGN_CENTRE, false, 0x2a6f3a, text->text);
   }
 }
 

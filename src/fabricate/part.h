@@ -2,6 +2,7 @@
  * in metres, of the finished part: the kerf comes in where tool paths are written. */
 #pragma once
 
+#include "base/arena.h"
 #include "design/design.h"
 #include "geometry/contour.h"
 
@@ -21,11 +22,17 @@ enum dea_layer {
 
 struct dea_part_contour {
   enum dea_layer layer;
-  bool closed, circle; // a circle has two vertices
-  size_t first, count; // of the part's vertices
+  bool circle;             // of two half circles
+  struct dea_contour path; // lent
 };
 
-enum { DEA_PART_TEXT_SIZE = 64, DEA_PART_TEXTS_MAX = 4, DEA_PART_MEASURES_MAX = 16 };
+enum {
+  DEA_PART_NAME_SIZE = 64,
+  DEA_PART_TITLE_SIZE = 128,
+  DEA_PART_TEXT_SIZE = 64,
+  DEA_PART_TEXTS_MAX = 4,
+  DEA_PART_MEASURES_MAX = 16
+};
 
 enum dea_part_kind {
   DEA_PART_BLANK,  // of a ply that a frame holds
@@ -53,21 +60,18 @@ struct dea_part_measure {
 };
 
 struct dea_part {
-  struct dea_context *ctx; // failed stays set when memory was short, as in struct dea_text
-  bool failed;
+  struct dea_arena *memory; // of the contours, lent; knows when it was short
   enum dea_part_kind kind;
-  size_t of;         // number of the ply or body
-  const char *name;  // of the files: "frame"
-  const char *title; // "Pre-stretch frame"
-  const char *seen;  // from where: "seen from the fibres"
+  size_t of;                       // number of the ply or body
+  char name[DEA_PART_NAME_SIZE];   // of the files: "frame"
+  char title[DEA_PART_TITLE_SIZE]; // "Pre-stretch frame"
+  const char *seen;                // from where: "seen from the fibres"
   enum dea_film_state state;
   bool flat;            // no film of the device is stretched: both states are the same
   double stretch[2][2]; // of its film, from unstretched to stretched; 0: it has none, or several
   size_t quantity;      // of it for one actuator
   bool paper;           // printed at 1:1, one for all copies, not cut
   bool mirrored;        // seen from the side away from the fibres
-  struct dea_vertex *vertex;
-  size_t vertex_count, vertex_room;
   struct dea_part_contour *contour;
   size_t contour_count, contour_room;
   struct dea_part_text text[DEA_PART_TEXTS_MAX];
@@ -78,13 +82,8 @@ struct dea_part {
 
 /* ---- making one ---- */
 
-/* A closed contour of vertices[count]; circle: of two half circles. */
-void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_vertex *vertices,
-                  size_t count, bool circle);
-void dea_part_circle(struct dea_part *part, enum dea_layer layer, double x_m, double y_m,
-                     double radius_m, struct dea_location location);
-void dea_part_line(struct dea_part *part, enum dea_layer layer, double x0_m, double y0_m,
-                   double x1_m, double y1_m, struct dea_location location);
+/* Copies a contour. */
+void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_contour *contour);
 void dea_part_write(struct dea_part *part, double x_m, double y_m, double height_m,
                     const char *format, ...) DEA_PRINTF(5, 6);
 void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double x0_m, double y0_m,
@@ -95,8 +94,6 @@ void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double 
 /* "stretched", "unstretched", or "flat": the film that its lengths are of. */
 const char *dea_part_film_name(const struct dea_part *part);
 
-/* Contour i; lent until the part changes. */
-struct dea_contour dea_part_contour_get(const struct dea_part *part, size_t i);
 /* {x min, y min, x max, y max} of all contours. */
 void dea_part_box(const struct dea_part *part, double box_m[4]);
 /* Material of the finished part: outer edges less holes. */
@@ -108,5 +105,3 @@ double dea_part_length_m(const struct dea_part *part, enum dea_layer layer);
  * contours that cross or lie outside of the part, pieces that a cutter of that kerf cannot follow.
  * Fails only for memory. */
 dea_status dea_part_check(const struct dea_part *part, double feature_m, double kerf_m);
-
-void dea_part_free(struct dea_part *part);

@@ -9,62 +9,56 @@
 
 enum { FRAME = 0xc9ced6, FIBRE = 0xe0a04a, WHITE = 0xffffff };
 
-static const struct dea_location nowhere = {0};
-
 /* What the workshop adds to the drawing of the device: contours and their looks. */
 struct picture {
-  struct dea_part parts;          // contours
-  struct dea_drawn_shape *shapes; // [parts.contour_count] owned; NULL when memory is short
+  struct dea_arena memory;        // of circles and boxes
+  struct dea_drawn_shape *shapes; // [count] owned
+  size_t count, capacity;
   char below[256];
   struct dea_device_drawing drawing;
 };
 
-/* Room for the looks of one contour more; NULL when memory is short. */
-static struct dea_drawn_shape *next(struct picture *p, const struct dea_drawn_shape *look)
+/* contour: of the plan or of the picture's memory, which may have been short. */
+static void add(struct picture *p, struct dea_contour contour, const struct dea_drawn_shape *look)
 {
-  size_t count = p->parts.contour_count;
-  void *bigger =
-      p->parts.failed ? NULL : dea_resize(p->parts.ctx, p->shapes, count, sizeof *p->shapes);
-  if (bigger == NULL) {
-    p->parts.failed = true;
-    return NULL;
+  if (contour.vertex != NULL && dea_array_grow(p->memory.ctx, &p->shapes, p->count, &p->capacity,
+                                               sizeof *p->shapes) == DEA_OK) {
+    p->shapes[p->count] = *look;
+    p->shapes[p->count++].contour = contour;
   }
-  p->shapes = bigger;
-  p->shapes[count - 1] = *look;
-  return &p->shapes[count - 1];
 }
 
 static void add_circle(struct picture *p, double x, double y, double radius,
                        const struct dea_drawn_shape *look)
 {
-  dea_part_circle(&p->parts, DEA_LAYER_MARK, x, y, radius, nowhere);
-  next(p, look);
+  struct dea_vertex *v = dea_arena_alloc(&p->memory, 2, sizeof *v);
+  for (int k = 0; k < 2 && v != NULL; k++) {
+    v[k] = (struct dea_vertex){.x_m = x + (k == 0 ? radius : -radius), .y_m = y, .bulge = 1};
+  }
+  add(p, (struct dea_contour){v, 2, true}, look);
 }
 
 static void add_region(struct picture *p, const struct dea_region *region,
                        const struct dea_drawn_shape *look)
 {
   for (size_t i = 0; i < region->contour_count; i++) {
-    const struct dea_contour contour = dea_region_contour(region, i);
-    dea_part_add(&p->parts, DEA_LAYER_MARK, contour.vertex, contour.count, false);
-    next(p, look);
+    add(p, dea_region_contour(region, i), look);
   }
 }
 
 static void add_box(struct picture *p, const struct dea_fab_plan *plan, const double half[2],
                     const struct dea_drawn_shape *look)
 {
-  struct dea_vertex v[4] = {{0}};
   if (plan->round) {
     add_circle(p, plan->centre_m[0], plan->centre_m[1], half[0], look);
     return;
   }
-  for (int k = 0; k < 4; k++) {
+  struct dea_vertex *v = dea_arena_alloc(&p->memory, 4, sizeof *v);
+  for (int k = 0; k < 4 && v != NULL; k++) {
     v[k].x_m = plan->centre_m[0] + (k == 0 || k == 3 ? half[0] : -half[0]);
     v[k].y_m = plan->centre_m[1] + (k < 2 ? half[1] : -half[1]);
   }
-  dea_part_add(&p->parts, DEA_LAYER_MARK, v, 4, false);
-  next(p, look);
+  add(p, (struct dea_contour){v, 4, true}, look);
 }
 
 static void add_leads(struct picture *p, const struct dea_fab_plan *plan)
@@ -111,7 +105,7 @@ static void build(struct picture *p, const struct dea_workshop *w)
   const struct dea_layout_ply *film = dea_layout_film(plan->layout);
   const char *title = plan->design->title.text, *file = dea_path_name(plan->design->file);
   char of[128] = "";
-  p->parts.ctx = w->memory.ctx;
+  p->memory.ctx = w->memory.ctx;
   if (film != NULL && film->pre_stretch[0] == film->pre_stretch[1]) {
     snprintf(of, sizeof of, "; pre-stretch %.4g; film %.60s", film->pre_stretch[0],
              film->material.name);
@@ -122,18 +116,14 @@ static void build(struct picture *p, const struct dea_workshop *w)
     add_frame(p, plan);
     add_leads(p, plan);
   }
-  size_t count = p->parts.failed ? 0 : p->parts.contour_count;
-  for (size_t i = 0; i < count; i++) {
-    p->shapes[i].contour = dea_part_contour_get(&p->parts, i);
-  }
   p->drawing = (struct dea_device_drawing){plan->layout, title[0] != '\0' ? title : file, p->below,
-                                           p->shapes, count};
+                                           p->shapes, p->count};
 }
 
 static void destroy(struct picture *p)
 {
-  dea_free(p->parts.ctx, p->shapes);
-  dea_part_free(&p->parts);
+  dea_free(p->memory.ctx, p->shapes);
+  dea_arena_free(&p->memory);
 }
 
 void dea_picture_size(const struct dea_workshop *workshop, double out_mm[2])

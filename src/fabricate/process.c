@@ -9,30 +9,12 @@
 #include "study/design_gradient.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
-// The file: headings, notes, steps and tables as HTML that needs nothing else ---------------------
-
-enum block_kind {
-  BLOCK_TITLE, // the first block
-  BLOCK_HEADING,
-  BLOCK_NOTE, // small
-  BLOCK_STEP, // numbered, with a box to tick
-  BLOCK_HEAD, // first row of a table
-  BLOCK_ROW,
-};
-
-struct document {
-  struct dea_text *html; // lent
-  const char *drawing;   // SVG text that is put after the second block
-  size_t count;          // of blocks so far
-  enum block_kind kind;  // of the last one
-  bool open;             // what encloses it stays open for the next one
-};
+// The file: HTML that needs nothing else ----------------------------------------------------------
 
 static const char style[] =
     "body{font:15px/1.5 'DejaVu Sans',Arial,sans-serif;color:#202020;max-width:60em;"
@@ -47,114 +29,17 @@ static const char style[] =
     "tr,li{break-inside:"
     "avoid}}";
 
-/* How a kind of block begins and ends, and what encloses several of it; of cells, their tag. */
-static const struct {
-  const char *begin, *end, *enclosure, *cell;
-} looks[] = {
-    [BLOCK_TITLE] = {"<h1>", "</h1>\n", "", NULL},
-    [BLOCK_HEADING] = {"<h2>", "</h2>\n", "", NULL},
-    [BLOCK_NOTE] = {"<p class=\"note\">", "</p>\n", "", NULL},
-    [BLOCK_STEP] = {"<li>\xe2\x98\x90 ", "</li>\n", "ol", NULL},
-    [BLOCK_HEAD] = {"<tr>", "</tr>\n", "table", "th"},
-    [BLOCK_ROW] = {"<tr>", "</tr>\n", "table", "td"},
-};
-
-static void add_words(struct document *document, const char *format, va_list args)
-{
-  struct dea_text *html = document->html;
-  va_list again;
-  va_copy(again, args);
-  const int length = vsnprintf(NULL, 0, format, args);
-  char *text = html->failed ? NULL : dea_alloc(html->ctx, (size_t)length + 1, 1);
-  if (text != NULL) {
-    vsnprintf(text, (size_t)length + 1, format, again);
-    dea_html_text(html, text);
-  }
-  va_end(again);
-  html->failed = html->failed || text == NULL;
-  dea_free(html->ctx, text);
-}
-
-static void add_cell(struct document *document, const char *format, va_list args)
-{
-  const char *tag = looks[document->kind].cell;
-  if (tag != NULL) {
-    dea_text_add(document->html, "<%s>", tag);
-  }
-  add_words(document, format, args);
-  if (tag != NULL) {
-    dea_text_add(document->html, "</%s>", tag);
-  }
-}
-
-/* Ends the last block, and what encloses it unless it goes on. */
-static void end_block(struct document *document, const char *wanted, bool new_table)
-{
-  const char *open = looks[document->kind].enclosure;
-  dea_text_add(document->html, "%s", looks[document->kind].end);
-  if (document->count == 2) {
-    dea_text_add(document->html,
-                 "<div role=\"img\" aria-label=\"Drawing of the actuator\">%s</div>\n",
-                 document->drawing != NULL ? document->drawing : "");
-  }
-  document->open = open[0] != '\0' && strcmp(open, wanted) == 0 && !new_table;
-  if (open[0] != '\0' && !document->open) {
-    dea_text_add(document->html, "</%s>\n", open);
-  }
-}
-
-/* The title is that of the file too. */
-static void begin_file(struct document *document, const char *format, va_list args)
-{
-  va_list again;
-  va_copy(again, args);
-  dea_text_add(document->html,
-               "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-               "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-               "style-src 'unsafe-inline'\">\n"
-               "<meta name=\"viewport\" content=\"width=device-width\">\n<title>");
-  add_words(document, format, again);
-  dea_text_add(document->html, "</title>\n<style>%s</style>\n</head>\n<body>\n", style);
-  va_end(again);
-}
-
-/* Adds a block with one cell, or the next cell of a row (printf style). */
-DEA_PRINTF(3, 4)
-static void add_block(struct document *document, enum block_kind kind, const char *format, ...)
-{
-  const char *wanted = looks[kind].enclosure;
-  va_list args;
-  va_start(args, format);
-  if (document->count == 0) {
-    begin_file(document, format, args);
-  } else {
-    end_block(document, wanted, kind == BLOCK_HEAD);
-  }
-  if (wanted[0] != '\0' && !document->open) {
-    dea_text_add(document->html, "<%s>\n", wanted);
-  }
-  document->kind = kind;
-  document->count++;
-  dea_text_add(document->html, "%s", looks[kind].begin);
-  add_cell(document, format, args);
-  va_end(args);
-}
-
-DEA_PRINTF(2, 3)
-static void next_cell(struct document *document, const char *format, ...)
-{
-  va_list args;
-  va_start(args, format);
-  add_cell(document, format, args);
-  va_end(args);
-}
+/* A step, numbered and with a box to tick. */
+#define STEP(words) "<li>\xe2\x98\x90 " words "</li>\n"
+/* Between two cells of a row. */
+#define CELL "</td><td>"
 
 enum { NUMBER = 32, WORDS = 256 };
 
 struct sheet {
   const struct dea_workshop *w;
   const struct dea_layout *layout;
-  struct document *to;
+  struct dea_text *to;
 };
 
 // Amounts -----------------------------------------------------------------------------------------
@@ -254,23 +139,16 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
 static void add_material(const struct sheet *s, int copies, const char *item, const char *material,
                          double area_m2, double volume_m3, const char *note)
 {
-  struct document *to = s->to;
-  add_block(to, BLOCK_ROW, "%s", item);
-  next_cell(to, "%s", material);
-  next_cell(to,
-            "%.4g\xc2\xa0"
-            "cm\xc2\xb2",
-            1e4 * area_m2);
-  next_cell(to,
-            "%.4g\xc2\xa0"
-            "cm\xc2\xb2",
-            1e4 * area_m2 * copies);
-  if (isnan(volume_m3)) {
-    next_cell(to, "%s", note);
-  } else {
-    next_cell(to, "%.4g\xc2\xa0mm\xc2\xb3 each, %.4g\xc2\xa0mm\xc2\xb3 in all. %s", 1e9 * volume_m3,
-              1e9 * volume_m3 * copies, note);
+  dea_html_add(s->to,
+               "<tr><td>%s" CELL "%s" CELL "%.4g\xc2\xa0"
+               "cm\xc2\xb2" CELL "%.4g\xc2\xa0"
+               "cm\xc2\xb2" CELL,
+               item, material, 1e4 * area_m2, 1e4 * area_m2 * copies);
+  if (!isnan(volume_m3)) {
+    dea_html_add(s->to, "%.4g\xc2\xa0mm\xc2\xb3 each, %.4g\xc2\xa0mm\xc2\xb3 in all. ",
+                 1e9 * volume_m3, 1e9 * volume_m3 * copies);
   }
+  dea_html_add(s->to, "%s</td></tr>\n", note);
 }
 
 static void add_ply(const struct sheet *s, size_t i)
@@ -338,12 +216,10 @@ static void add_materials(const struct sheet *s)
   const struct dea_fab_plan *plan = &s->w->plan;
   struct dea_amounts a;
   dea_amounts_find(s->w, &a);
-  add_block(s->to, BLOCK_HEADING, "Bill of materials");
-  add_block(s->to, BLOCK_HEAD, "for");
-  next_cell(s->to, "material");
-  next_cell(s->to, "one");
-  next_cell(s->to, "all %d", plan->copies);
-  next_cell(s->to, "remarks");
+  dea_html_add(s->to,
+               "<h2>Bill of materials</h2>\n<table>\n<tr><th>for</th><th>material</th>"
+               "<th>one</th><th>all %d</th><th>remarks</th></tr>\n",
+               plan->copies);
   for (size_t i = 0; i < l->ply_count; i++) {
     if (dea_ply_like(l, i) == i && dea_ply_is_cut(&l->plies[i])) {
       add_ply(s, i);
@@ -362,6 +238,7 @@ static void add_materials(const struct sheet *s)
     add_material(s, plan->copies, l->bodies[i].name, "rigid", area_of(s, l->bodies[i].region), NAN,
                  note);
   }
+  dea_html_add(s->to, "</table>\n");
 }
 
 // Steps -------------------------------------------------------------------------------------------
@@ -394,12 +271,12 @@ static void add_cutting(const struct sheet *s)
     }
     const struct dea_part *blank = dea_workshop_part(s->w, DEA_PART_BLANK, i);
     write_size(s, blank, size);
-    add_block(s->to, BLOCK_STEP,
-              "Cut %zu film%s of %s (%s) from %s, %.4g \xc2\xb5m thick, and draw the "
-              "crosses of the grid, %s mm apart where the pre-stretch is the largest, and "
-              "the three alignment marks%s.",
-              count, count > 1 ? "s" : "", size, blank->name, ply->material.name,
-              1e6 * dea_ply_layer_m(ply), grid, count > 1 ? " on each" : "");
+    dea_html_add(s->to,
+                 STEP("Cut %zu film%s of %s (%s) from %s, %.4g \xc2\xb5m thick, and draw the "
+                      "crosses of the grid, %s mm apart where the pre-stretch is the largest, and "
+                      "the three alignment marks%s."),
+                 count, count > 1 ? "s" : "", size, blank->name, ply->material.name,
+                 1e6 * dea_ply_layer_m(ply), grid, count > 1 ? " on each" : "");
   }
 }
 
@@ -433,25 +310,25 @@ static void add_printing(const struct sheet *s)
     }
     write_channels(s, i / 2, top, channels);
     if (!top) {
-      add_block(s->to, BLOCK_STEP,
-                "Lay %s onto a PET carrier, its lower side up, so that its marks lie as in "
-                "%s, and print the bottom through it: electrodes, leads, pads and marks in "
-                "one go. Channel: %s. Cure at %.4g \xc2\xb0"
-                "C for %.4g h.",
-                ply, stencil->name, channels, celsius, hours);
+      dea_html_add(s->to,
+                   STEP("Lay %s onto a PET carrier, its lower side up, so that its marks lie as in "
+                        "%s, and print the bottom through it: electrodes, leads, pads and marks in "
+                        "one go. Channel: %s. Cure at %.4g \xc2\xb0"
+                        "C for %.4g h."),
+                   ply, stencil->name, channels, celsius, hours);
       continue;
     }
     if (dea_workshop_part(s->w, DEA_PART_BOTTOM, i / 2) != NULL) {
-      add_block(s->to, BLOCK_STEP,
-                "Put a thin layer of silicone glue onto the bottom electrodes of %s, leave "
-                "pads free, and transfer it onto a new PET carrier with them down.",
-                ply);
+      dea_html_add(s->to,
+                   STEP("Put a thin layer of silicone glue onto the bottom electrodes of %s, leave "
+                        "pads free, and transfer it onto a new PET carrier with them down."),
+                   ply);
     }
-    add_block(s->to, BLOCK_STEP,
-              "Print onto the top of %s through %s, its holes over the marks. Channel: %s. "
-              "Cure at %.4g \xc2\xb0"
-              "C for %.4g h.",
-              ply, stencil->name, channels, celsius, hours);
+    dea_html_add(s->to,
+                 STEP("Print onto the top of %s through %s, its holes over the marks. Channel: %s. "
+                      "Cure at %.4g \xc2\xb0"
+                      "C for %.4g h."),
+                 ply, stencil->name, channels, celsius, hours);
   }
 }
 
@@ -478,11 +355,11 @@ static void add_layers(const struct sheet *s, size_t i)
     write_channels(s, i, top == 1, channels[top]);
   }
   if (dea_ply_layers(&s->layout->plies[i]) > 1) {
-    add_block(s->to, BLOCK_STEP,
-              "%s has %zu layers: do so with each of them, one on the other. Electrodes "
-              "by turns from the bottom up: %s; %s.",
-              s->layout->plies[i].name, dea_ply_layers(&s->layout->plies[i]), channels[0],
-              channels[1]);
+    dea_html_add(s->to,
+                 STEP("%s has %zu layers: do so with each of them, one on the other. Electrodes "
+                      "by turns from the bottom up: %s; %s."),
+                 s->layout->plies[i].name, dea_ply_layers(&s->layout->plies[i]), channels[0],
+                 channels[1]);
   }
 }
 
@@ -497,18 +374,19 @@ static void add_tabs_step(const struct sheet *s, size_t i)
   dea_length_text(a, sizeof a, s->w->plan.piece_outer_m - d->fibre_tip_radius_m);
   dea_length_text(b, sizeof b, d->fibre_width_m);
   dea_length_text(c, sizeof c, d->fibre_tip_radius_m);
-  add_block(s->to, BLOCK_STEP,
-            "Cut %d %s with their holder (%s) from %s, %.4g \xc2\xb5m thick: %s mm long "
-            "inside the frame, %s mm wide.",
-            d->fibre_count, ply->name, name, ply->material.name, 1e6 * ply->thickness_m, a, b);
-  add_block(s->to, BLOCK_STEP,
-            "Put glue onto the %s%s, not onto holder and tabs; lay them onto what is there, "
-            "holes over the marks. The tips then lie %s mm from the centre.",
-            ply->name, anchored ? " and their anchors" : "", c);
-  add_block(s->to, BLOCK_STEP,
-            "Once the glue holds, cut the %d tabs%s and lift the "
-            "holder off.",
-            d->fibre_count, anchored ? "" : " at the outer ends");
+  dea_html_add(s->to,
+               STEP("Cut %d %s with their holder (%s) from %s, %.4g \xc2\xb5m thick: %s mm long "
+                    "inside the frame, %s mm wide."),
+               d->fibre_count, ply->name, name, ply->material.name, 1e6 * ply->thickness_m, a, b);
+  dea_html_add(
+      s->to,
+      STEP("Put glue onto the %s%s, not onto holder and tabs; lay them onto what is there, "
+           "holes over the marks. The tips then lie %s mm from the centre."),
+      ply->name, anchored ? " and their anchors" : "", c);
+  dea_html_add(s->to,
+               STEP("Once the glue holds, cut the %d tabs%s and lift the "
+                    "holder off."),
+               d->fibre_count, anchored ? "" : " at the outer ends");
 }
 
 /* A film on the frame, or onto what is there. */
@@ -519,12 +397,12 @@ static void add_film_step(const struct sheet *s, size_t i, const char *where)
   char stretch[WORDS];
   write_stretch(ply, stretch);
   if (dea_ply_is_stretched(ply)) {
-    add_block(s->to, BLOCK_STEP,
-              "Stretch %s (%s) %s, until its grid and marks cover the template; it is then "
-              "%.4g \xc2\xb5m thick%s.",
-              ply->name, name, stretch, 1e6 * dea_ply_stretched_layer_m(ply), where);
+    dea_html_add(s->to,
+                 STEP("Stretch %s (%s) %s, until its grid and marks cover the template; it is then "
+                      "%.4g \xc2\xb5m thick%s."),
+                 ply->name, name, stretch, 1e6 * dea_ply_stretched_layer_m(ply), where);
   } else {
-    add_block(s->to, BLOCK_STEP, "Lay %s (%s) flat%s.", ply->name, name, where);
+    dea_html_add(s->to, STEP("Lay %s (%s) flat%s."), ply->name, name, where);
   }
 }
 
@@ -552,9 +430,9 @@ static void add_ply_step(const struct sheet *s, size_t i, enum order order)
   }
   const struct dea_part *part = dea_workshop_part(s->w, DEA_PART_OUTLINE, i);
   const size_t pieces = dea_part_pieces(part);
-  add_block(s->to, BLOCK_STEP, "Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s.",
-            ply->name, part->name, pieces, pieces > 1 ? "s on their carrier" : "",
-            ply->material.name, 1e6 * dea_ply_stretched_layer_m(ply), where);
+  dea_html_add(s->to, STEP("Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s."), ply->name,
+               part->name, pieces, pieces > 1 ? "s on their carrier" : "", ply->material.name,
+               1e6 * dea_ply_stretched_layer_m(ply), where);
   add_layers(s, i);
 }
 
@@ -578,18 +456,18 @@ static void add_assembly(const struct sheet *s)
     }
   }
   for (size_t i = 0; i < l->body_count; i++) {
-    add_block(s->to, BLOCK_STEP,
-              "Cut %s (%s) from a plate that does not bend and bond it where the template "
-              "shows it.",
-              l->bodies[i].name, dea_workshop_part(s->w, DEA_PART_BODY, i)->name);
+    dea_html_add(s->to,
+                 STEP("Cut %s (%s) from a plate that does not bend and bond it where the template "
+                      "shows it."),
+                 l->bodies[i].name, dea_workshop_part(s->w, DEA_PART_BODY, i)->name);
   }
   for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_part *part = dea_workshop_part(s->w, DEA_PART_OUTLINE, i);
     if (part != NULL && part->of == i && dea_ply_is_stretched(&l->plies[i])) {
-      add_block(s->to, BLOCK_STEP,
-                "Hold what is a support (below), then cut %s along its outline "
-                "(%s): what it is bonded to takes its tension.",
-                l->plies[i].name, part->name);
+      dea_html_add(s->to,
+                   STEP("Hold what is a support (below), then cut %s along its outline "
+                        "(%s): what it is bonded to takes its tension."),
+                   l->plies[i].name, part->name);
     }
   }
 }
@@ -610,12 +488,12 @@ static void add_supports(const struct sheet *s)
         snprintf(held + n, sizeof held - n, "%s%c", n > 0 ? ", " : "", "xyz"[k]);
       }
     }
-    add_block(s->to, BLOCK_STEP, "Hold %s%s%s%s along %s%s.", p->edge ? "the edge of " : "",
-              l->regions[p->region].name, within ? " within " : "",
-              within ? l->regions[p->within].name : "", held,
-              p->hinged                               ? ", so that it may turn"
-              : p->edge && !within && s->w->plan.held ? ": the frame does that"
-                                                      : "");
+    dea_html_add(s->to, STEP("Hold %s%s%s%s along %s%s."), p->edge ? "the edge of " : "",
+                 l->regions[p->region].name, within ? " within " : "",
+                 within ? l->regions[p->within].name : "", held,
+                 p->hinged                               ? ", so that it may turn"
+                 : p->edge && !within && s->w->plan.held ? ": the frame does that"
+                                                         : "");
   }
   for (size_t i = 0; i < l->spring_count; i++) {
     const struct dea_layout_spring *p = &l->springs[i];
@@ -625,22 +503,22 @@ static void add_supports(const struct sheet *s)
     if (p->count == 0) {
       snprintf(force, sizeof force, "%.4g %s", p->stiffness, p->component < 3 ? "N/m" : "N m/rad");
     }
-    add_block(s->to, BLOCK_STEP, "Fasten the spring %s to %s, %s.", along[p->component],
-              l->bodies[p->body].name, force);
+    dea_html_add(s->to, STEP("Fasten the spring %s to %s, %s."), along[p->component],
+                 l->bodies[p->body].name, force);
   }
   for (size_t i = 1; i < l->channel_count; i++) {
     const struct dea_layout_channel *c = &l->channels[i];
     if (c->waveform != NULL) {
-      add_block(s->to, BLOCK_STEP, "Connect %s to a source of its own (%s).", c->name, c->waveform);
+      dea_html_add(s->to, STEP("Connect %s to a source of its own (%s)."), c->name, c->waveform);
     } else if (c->own_V != 0) {
-      add_block(s->to, BLOCK_STEP, "Connect %s: %.4g of the voltage, and %+.4g V.", c->name,
-                c->ratio, c->own_V);
+      dea_html_add(s->to, STEP("Connect %s: %.4g of the voltage, and %+.4g V."), c->name, c->ratio,
+                   c->own_V);
     } else if (c->ratio == 0) {
-      add_block(s->to, BLOCK_STEP, "Connect %s to ground.", c->name);
+      dea_html_add(s->to, STEP("Connect %s to ground."), c->name);
     } else if (c->ratio == 1) {
-      add_block(s->to, BLOCK_STEP, "Connect %s to the voltage.", c->name);
+      dea_html_add(s->to, STEP("Connect %s to the voltage."), c->name);
     } else {
-      add_block(s->to, BLOCK_STEP, "Connect %s: %.4g of the voltage.", c->name, c->ratio);
+      dea_html_add(s->to, STEP("Connect %s: %.4g of the voltage."), c->name, c->ratio);
     }
   }
 }
@@ -722,9 +600,7 @@ static void write_number(const struct sheet *s, const struct dea_design_number *
 static void add_row(const struct sheet *s, const char *what, const char *wanted,
                     const char *tolerance)
 {
-  add_block(s->to, BLOCK_ROW, "%s", what);
-  next_cell(s->to, "%s", wanted);
-  next_cell(s->to, "%s", tolerance);
+  dea_html_add(s->to, "<tr><td>%s" CELL "%s" CELL "%s</td></tr>\n", what, wanted, tolerance);
 }
 
 /* The ply that a key is of; DEA_LAYOUT_NONE. */
@@ -794,10 +670,8 @@ static dea_status add_checks(struct dea_context *ctx, const struct sheet *s)
 {
   const struct dea_device *d = s->w->plan.device;
   char wanted[WORDS], number[NUMBER], width[NUMBER];
-  add_block(s->to, BLOCK_HEADING, "Check list");
-  add_block(s->to, BLOCK_HEAD, "what");
-  next_cell(s->to, "wanted");
-  next_cell(s->to, "tolerance");
+  dea_html_add(s->to, "<h2>Check list</h2>\n<table>\n<tr><th>what</th><th>wanted</th>"
+                      "<th>tolerance</th></tr>\n");
   DEA_TRY(ctx, add_numbers(ctx, s));
   if (s->w->plan.on_tabs != DEA_LAYOUT_NONE) {
     write_length(width, d->fibre_width_m, false);
@@ -813,40 +687,50 @@ static dea_status add_checks(struct dea_context *ctx, const struct sheet *s)
   write_length(number, s->w->plan.kerf_m, false);
   snprintf(wanted, sizeof wanted, "%s, on a test square", number);
   add_row(s, "kerf of the cutter", wanted, "not given");
-  add_block(s->to, BLOCK_NOTE,
-            "Tolerances are those of the design's section fabrication.tolerance; those that "
-            "nobody wrote are assumptions (docs/fabrication.md). 'dea run --sensitivity' "
-            "computes what they do (change by tolerance).");
+  dea_html_add(
+      s->to,
+      "</table>\n<p class=\"note\">Tolerances are those of the design&#39;s section "
+      "fabrication.tolerance; those that nobody wrote are assumptions "
+      "(docs/fabrication.md). &#39;dea run --sensitivity&#39; computes what they do (change by "
+      "tolerance).</p>\n");
   return DEA_OK;
 }
 
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
                              const char *drawing, struct dea_text *out)
 {
-  struct document document = {.html = out, .drawing = drawing};
-  const struct sheet s = {workshop, workshop->plan.layout, &document};
+  const struct sheet s = {workshop, workshop->plan.layout, out};
   const struct dea_design *design = workshop->plan.design;
-  const char *title = design->title.text;
-  add_block(&document, BLOCK_TITLE, "Process sheet: %s",
-            title[0] != '\0' ? title : dea_path_name(design->file));
-  add_block(&document, BLOCK_NOTE,
-            "Made by dea fab from %s for %d actuator%s. Steps after section 3.1 of the "
-            "paper, with the numbers of the design. DXF and SVG files have the kerf of the "
-            "cutter in them, parts.pdf shows the finished parts at 1:1.%s",
-            dea_path_name(design->file), workshop->plan.copies,
-            workshop->plan.copies > 1 ? "s" : "",
-            s.layout->ply_count > 1
-                ? " Plies lie on each other from bottom to top. Glue that has a thickness "
-                  "that counts is a ply of its own."
-                : "");
+  const char *file = dea_path_name(design->file);
+  const char *title = design->title.text[0] != '\0' ? design->title.text : file;
+  dea_html_add(out,
+               "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+               "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+               "style-src 'unsafe-inline'\">\n"
+               "<meta name=\"viewport\" content=\"width=device-width\">\n"
+               "<title>Process sheet: %s</title>\n<style>",
+               title);
+  dea_text_add(out, "%s</style>\n</head>\n<body>\n", style);
+  dea_html_add(out,
+               "<h1>Process sheet: %s</h1>\n<p class=\"note\">Made by dea fab from %s for %d "
+               "actuator%s. Steps after section 3.1 of the paper, with the numbers of the design. "
+               "DXF and SVG files have the kerf of the cutter in them, parts.pdf shows the "
+               "finished parts at 1:1.%s</p>\n",
+               title, file, workshop->plan.copies, workshop->plan.copies > 1 ? "s" : "",
+               s.layout->ply_count > 1
+                   ? " Plies lie on each other from bottom to top. Glue that has a thickness "
+                     "that counts is a ply of its own."
+                   : "");
+  dea_text_add(out, "<div role=\"img\" aria-label=\"Drawing of the actuator\">%s</div>\n",
+               drawing != NULL ? drawing : "");
   add_materials(&s);
-  add_block(&document, BLOCK_HEADING, "Steps");
+  dea_html_add(out, "<h2>Steps</h2>\n<ol>\n");
   add_cutting(&s);
   add_printing(&s);
   add_assembly(&s);
   add_supports(&s);
+  dea_html_add(out, "</ol>\n");
   DEA_TRY(ctx, add_checks(ctx, &s));
-  end_block(&document, "", false);
-  dea_text_add(out, "</body>\n</html>\n");
+  dea_html_add(out, "</body>\n</html>\n");
   return out->failed ? DEA_E_MEMORY : DEA_OK;
 }

@@ -13,21 +13,21 @@ static double mm(double si)
 }
 
 /* SVG counts y downwards, so arcs turn the other way. */
-static void write_path(struct dea_text *out, const struct dea_part_contour *contour,
-                       const struct dea_vertex *v, size_t count, const double at[2], double height)
+static void write_path(struct dea_text *out, bool circle, const struct dea_contour *path,
+                       const double at[2], double height)
 {
-  if (contour->circle) {
+  const struct dea_vertex *v = path->vertex;
+  if (circle) {
     dea_text_add(out, "    <circle cx=\"%.6f\" cy=\"%.6f\" r=\"%.6f\"/>\n",
                  mm(at[0] + 0.5 * (v[0].x_m + v[1].x_m)),
                  mm(height - at[1] - 0.5 * (v[0].y_m + v[1].y_m)),
                  mm(0.5 * hypot(v[1].x_m - v[0].x_m, v[1].y_m - v[0].y_m)));
     return;
   }
-  const struct dea_contour path = {v, count, contour->closed};
   dea_text_add(out, "    <path d=\"M%.6f %.6f", mm(at[0] + v[0].x_m),
                mm(height - at[1] - v[0].y_m));
-  for (size_t i = 0; i < dea_contour_pieces(&path); i++) {
-    const struct dea_piece piece = dea_contour_piece(&path, i);
+  for (size_t i = 0; i < dea_contour_pieces(path); i++) {
+    const struct dea_piece piece = dea_contour_piece(path, i);
     double x = mm(at[0] + piece.to[0]), y = mm(height - at[1] - piece.to[1]);
     if (piece.arc) {
       dea_text_add(out, " A%.6f %.6f 0 %d %d %.6f %.6f", mm(piece.radius_m), mm(piece.radius_m),
@@ -36,17 +36,15 @@ static void write_path(struct dea_text *out, const struct dea_part_contour *cont
       dea_text_add(out, " L%.6f %.6f", x, y);
     }
   }
-  dea_text_add(out, "%s\"/>\n", contour->closed ? " Z" : "");
+  dea_text_add(out, "%s\"/>\n", path->closed ? " Z" : "");
 }
 
 static void write_words(struct dea_text *out, double x, double y, double height, const char *text)
 {
-  dea_text_add(out,
+  dea_html_add(out,
                "    <text x=\"%.6f\" y=\"%.6f\" font-size=\"%.6f\" text-anchor=\"middle\" "
-               "stroke=\"none\" fill=\"#000000\" font-family=\"sans-serif\">",
-               mm(x), mm(y), mm(1.4 * height));
-  dea_html_text(out, text);
-  dea_text_add(out, "</text>\n");
+               "stroke=\"none\" fill=\"#000000\" font-family=\"sans-serif\">%s</text>\n",
+               mm(x), mm(y), mm(1.4 * height), text);
 }
 
 /* What a part has on one layer, for one copy. */
@@ -56,11 +54,11 @@ static dea_status write_copy(struct dea_text *out, const struct dea_workshop *wo
 {
   for (size_t i = 0; i < part->contour_count; i++) {
     if (part->contour[i].layer == layer) {
-      struct dea_vertex *path;
-      size_t count;
-      DEA_TRY(part->ctx, dea_workshop_path(workshop, part, i, &path, &count));
-      write_path(out, &part->contour[i], path, count, at, height);
-      dea_free(part->ctx, path);
+      struct dea_vertex *memory;
+      struct dea_contour path;
+      DEA_TRY(out->ctx, dea_workshop_path(workshop, part, i, &memory, &path));
+      write_path(out, part->contour[i].circle, &path, at, height);
+      dea_free(out->ctx, memory);
     }
   }
   for (size_t i = 0; i < part->text_count && layer == DEA_LAYER_MARK; i++) {
@@ -90,7 +88,7 @@ static dea_status write_layer(struct dea_text *out, const struct dea_workshop *w
   for (int copy = 0; copy < layout->count; copy++) {
     double at[2];
     dea_sheet_place(layout, copy, at);
-    DEA_TRY(part->ctx, write_copy(out, workshop, part, layer, at, layout->height_m));
+    DEA_TRY(out->ctx, write_copy(out, workshop, part, layer, at, layout->height_m));
   }
   dea_text_add(out, "  </g>\n");
   return DEA_OK;
@@ -99,18 +97,16 @@ static dea_status write_layer(struct dea_text *out, const struct dea_workshop *w
 dea_status dea_svg_write(const struct dea_workshop *workshop, size_t index, struct dea_text *out)
 {
   const struct dea_sheet_layout *layout = &workshop->layout[index];
-  const struct dea_part *part = &workshop->part[index];
-  struct dea_text words = {.ctx = part->ctx};
+  struct dea_text words = {.ctx = out->ctx};
   double width = mm(layout->width_m), height = mm(layout->height_m);
   dea_sheet_labels(workshop, index, &words);
-  dea_text_add(out,
+  dea_html_add(out,
                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
                "<svg xmlns=\"http://www.w3.org/2000/svg\" "
                "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"\n"
-               "     width=\"%.6fmm\" height=\"%.6fmm\" viewBox=\"0 0 %.6f %.6f\">\n  <title>",
-               width, height, width, height);
-  dea_html_text(out, dea_text_get(&words));
-  dea_text_add(out, "</title>\n");
+               "     width=\"%.6fmm\" height=\"%.6fmm\" viewBox=\"0 0 %.6f %.6f\">\n"
+               "  <title>%s</title>\n",
+               width, height, width, height, dea_text_get(&words));
   dea_status status = words.failed ? DEA_E_MEMORY : DEA_OK;
   dea_text_free(&words);
   for (int layer = 0; layer < DEA_LAYER_NOTE && status == DEA_OK; layer++) {

@@ -88,7 +88,6 @@ void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out
 static dea_status check_parts(struct dea_context *ctx, const struct dea_workshop *w)
 {
   for (size_t i = 0; i < w->count; i++) {
-    DEA_TRY_MEMORY(!w->part[i].failed);
     DEA_TRY(ctx, dea_part_check(&w->part[i], w->plan.feature_m, w->plan.kerf_m));
   }
   return DEA_OK;
@@ -145,9 +144,6 @@ dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design 
 void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop)
 {
   if (workshop != NULL) {
-    for (size_t i = 0; i < workshop->count; i++) {
-      dea_part_free(&workshop->part[i]);
-    }
     dea_fab_plan_free(&workshop->plan);
     dea_arena_free(&workshop->memory);
     dea_free(ctx, workshop);
@@ -171,20 +167,22 @@ const struct dea_part *dea_workshop_part(const struct dea_workshop *workshop,
 }
 
 dea_status dea_workshop_path(const struct dea_workshop *workshop, const struct dea_part *part,
-                             size_t i, struct dea_vertex **out, size_t *count)
+                             size_t i, struct dea_vertex **memory, struct dea_contour *out)
 {
-  const struct dea_contour contour = dea_part_contour_get(part, i);
+  struct dea_context *ctx = part->memory->ctx;
+  const struct dea_part_contour *own = &part->contour[i];
   double half = 0.5 * workshop->plan.kerf_m;
-  double outwards = part->contour[i].layer == DEA_LAYER_CUT_OUTER   ? half
-                    : part->contour[i].layer == DEA_LAYER_CUT_INNER ? -half
-                                                                    : 0;
-  size_t at;
-  *out = dea_alloc(part->ctx, 2 * contour.count, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  if (!dea_contour_offset(&contour, outwards, *out, count, &at)) { // was checked
-    dea_free(part->ctx, *out);
-    *out = NULL;
-    return dea_fail(part->ctx, DEA_E_ARGUMENT, "a contour of '%s' has no tool path", part->name);
+  double outwards = own->layer == DEA_LAYER_CUT_OUTER   ? half
+                    : own->layer == DEA_LAYER_CUT_INNER ? -half
+                                                        : 0;
+  size_t count, at;
+  *memory = dea_alloc(ctx, 2 * own->path.count, sizeof **memory);
+  DEA_TRY_MEMORY(*memory != NULL);
+  if (!dea_contour_offset(&own->path, outwards, *memory, &count, &at)) { // was checked
+    dea_free(ctx, *memory);
+    *memory = NULL;
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a contour of '%s' has no tool path", part->name);
   }
+  *out = (struct dea_contour){*memory, count, own->path.closed};
   return DEA_OK;
 }

@@ -38,6 +38,6 @@ const struct dea_part *dea_workshop_part(const struct dea_workshop *workshop,
 /* Centre of a copy on its sheet. */
 void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out_m[2]);
 /* Tool path of contour i: the kerf's half outside of outer edges and inside of holes; what is only
- * marked stays as it is. out: [*count], owned by the caller. */
+ * marked stays as it is. out: of vertices *memory, owned by the caller. */
 dea_status dea_workshop_path(const struct dea_workshop *workshop, const struct dea_part *part,
-                             size_t i, struct dea_vertex **out, size_t *count);
+                             size_t i, struct dea_vertex **memory, struct dea_contour *out);

@@ -10,10 +10,10 @@ enum dea_align { DEA_ALIGN_LEFT, DEA_ALIGN_CENTRE, DEA_ALIGN_RIGHT };
 struct dea_canvas;
 
 struct dea_canvas_type {
-  /* title: of the document; lent until it is destroyed. */
+  /* title: of the document; lent until it is destroyed. Of dea_canvas_svg NULL. */
   dea_status (*create)(struct dea_context *ctx, enum dea_canvas_format format, double width_mm,
                        double height_mm, const char *title, struct dea_canvas **out);
-  /* Ends a page and begins one of another size; PDF only. */
+  /* Ends a page and begins one of another size; PDF only, else NULL. */
   void (*page)(struct dea_canvas *canvas, double width_mm, double height_mm);
   /* Adds to the path: a contour, its metres times `scale`, moved by x, y. */
   void (*contour)(struct dea_canvas *canvas, const struct dea_contour *contour, double scale,
@@ -28,8 +28,8 @@ struct dea_canvas_type {
   /* What is drawn from here to `unclip` shows inside of the path only, which is forgotten. */
   void (*clip)(struct dea_canvas *canvas);
   void (*unclip)(struct dea_canvas *canvas);
-  /* UTF-8 text; size: of the letters' em; x, y: its base line; angle in radian. */
-  void (*text)(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm, double angle,
+  /* UTF-8 text; size: of the letters' em; x, y: its base line. */
+  void (*text)(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm,
                enum dea_align align, bool bold, unsigned colour, const char *text);
   double (*text_width)(struct dea_canvas *canvas, double size_mm, bool bold, const char *text);
   /* The file as a whole; bytes lent until the canvas is destroyed. */
@@ -37,11 +37,11 @@ struct dea_canvas_type {
   void (*destroy)(struct dea_canvas *canvas);
 };
 
-/* One that writes the text of an SVG: no more than this library is needed. It knows no PNG or PDF,
- * and letters have about the width that DejaVu Sans gives them. */
+/* One that writes the text of an SVG: no more than this library is needed. Letters have about the
+ * width that DejaVu Sans gives them. number: tells the drawings of one page apart. */
 extern const struct dea_canvas_type dea_canvas_svg;
-/* Tells the drawings of one page apart; 1 unless it is called first. */
-void dea_canvas_svg_number(struct dea_canvas *canvas, int number);
+dea_status dea_canvas_svg_create(struct dea_context *ctx, int number, double width_mm,
+                                 double height_mm, struct dea_canvas **out);
 
 /* A canvas with its type, as drawings are handed it. */
 struct dea_paper {

@@ -35,10 +35,9 @@ static void destroy(struct dea_canvas *canvas)
   }
 }
 
-static dea_status create(struct dea_context *ctx, enum dea_canvas_format format, double width_mm,
-                         double height_mm, const char *title, struct dea_canvas **out)
+dea_status dea_canvas_svg_create(struct dea_context *ctx, int number, double width_mm,
+                                 double height_mm, struct dea_canvas **out)
 {
-  (void)format, (void)title;
   *out = dea_alloc(ctx, 1, sizeof **out);
   DEA_TRY_MEMORY(*out != NULL);
   **out = (struct dea_canvas){.ctx = ctx,
@@ -47,18 +46,8 @@ static dea_status create(struct dea_context *ctx, enum dea_canvas_format format,
                               .whole = {.ctx = ctx},
                               .width_mm = width_mm,
                               .height_mm = height_mm,
-                              .number = 1};
+                              .number = number};
   return DEA_OK;
-}
-
-void dea_canvas_svg_number(struct dea_canvas *canvas, int number)
-{
-  canvas->number = number;
-}
-
-static void page(struct dea_canvas *canvas, double width_mm, double height_mm)
-{
-  (void)canvas, (void)width_mm, (void)height_mm; // an SVG has one
 }
 
 static void contour(struct dea_canvas *canvas, const struct dea_contour *c, double scale,
@@ -147,20 +136,14 @@ static double text_width(struct dea_canvas *canvas, double size_mm, bool bold, c
   return (bold ? 0.6 : 0.52) * size_mm * (double)letters;
 }
 
-static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm, double angle,
+static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm,
                  enum dea_align align, bool bold, unsigned colour, const char *words)
 {
   static const char *const anchor[] = {"start", "middle", "end"};
-  struct dea_text *out = &canvas->body;
-  double x = x_of(x_mm), y = y_of(canvas, y_mm);
-  dea_text_add(out, "<text x=\"%.2f\" y=\"%.2f\" ", x, y);
-  if (angle != 0) {
-    dea_text_add(out, "transform=\"rotate(%.4g %.2f %.2f)\" ", -angle * 180 / acos(-1), x, y);
-  }
-  dea_text_add(out, "font-size=\"%.3g\" fill=\"#%06x\" text-anchor=\"%s\"%s>", unit * size_mm,
-               colour, anchor[align], bold ? " font-weight=\"bold\"" : "");
-  dea_html_text(out, words);
-  dea_text_add(out, "</text>\n");
+  dea_html_add(&canvas->body,
+               "<text x=\"%.2f\" y=\"%.2f\" font-size=\"%.3g\" fill=\"#%06x\" text-anchor=\"%s\"",
+               x_of(x_mm), y_of(canvas, y_mm), unit * size_mm, colour, anchor[align]);
+  dea_html_add(&canvas->body, bold ? " font-weight=\"bold\">%s</text>\n" : ">%s</text>\n", words);
 }
 
 static dea_status finish(struct dea_canvas *canvas, const char **bytes, size_t *length)
@@ -180,8 +163,6 @@ static dea_status finish(struct dea_canvas *canvas, const char **bytes, size_t *
 }
 
 const struct dea_canvas_type dea_canvas_svg = {
-    .create = create,
-    .page = page,
     .contour = contour,
     .line = line,
     .box = box,

@@ -172,7 +172,7 @@ static void draw_text(const struct view *v, double x, double y, double size, boo
                       unsigned colour, const char *words)
 {
   if (v->paper != NULL) {
-    v->paper->type->text(v->paper->canvas, x, y, size, 0, DEA_ALIGN_LEFT, bold, colour, words);
+    v->paper->type->text(v->paper->canvas, x, y, size, DEA_ALIGN_LEFT, bold, colour, words);
   }
 }
 
@@ -1071,9 +1071,8 @@ dea_status dea_device_drawing_add_svg(const struct dea_device_drawing *drawing, 
   size_t length;
   dea_device_drawing_size(drawing, size);
   void *locale = dea_c_locale_enter();
-  dea_status status = type->create(out->ctx, DEA_CANVAS_SVG, size[0], size[1], "", &paper.canvas);
+  dea_status status = dea_canvas_svg_create(out->ctx, number, size[0], size[1], &paper.canvas);
   if (status == DEA_OK) {
-    dea_canvas_svg_number(paper.canvas, number);
     dea_device_drawing_draw(&paper, drawing);
     status = type->finish(paper.canvas, &bytes, &length);
   }

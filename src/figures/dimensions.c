@@ -92,11 +92,10 @@ static void draw_label(const struct dea_paper *paper, const struct dea_callout *
   if (!callout->bare) {
     arrow(paper, at[0], at[1], atan2(at[1] - y, at[0] - elbow));
   }
-  paper->type->text(paper->canvas, x, letters, label_size, 0, align, false, INK, callout->label);
-  paper->type->text(paper->canvas, x, letters - 3.4, note_size, 0, align, false, GREY,
-                    callout->note);
+  paper->type->text(paper->canvas, x, letters, label_size, align, false, INK, callout->label);
+  paper->type->text(paper->canvas, x, letters - 3.4, note_size, align, false, GREY, callout->note);
   if (callout->below[0] != '\0') {
-    paper->type->text(paper->canvas, x, letters - 6.2, note_size, 0, align, false, GREY,
+    paper->type->text(paper->canvas, x, letters - 6.2, note_size, align, false, GREY,
                       callout->below);
   }
 }
@@ -172,7 +171,7 @@ void dea_dimensions_fit(const struct dea_paper *paper, double x_mm, double y_mm,
       break;
     }
   }
-  paper->type->text(paper->canvas, x_mm, y_mm, size_mm, 0, DEA_ALIGN_LEFT, bold, colour, words);
+  paper->type->text(paper->canvas, x_mm, y_mm, size_mm, DEA_ALIGN_LEFT, bold, colour, words);
 }
 
 void dea_dimensions_head(const struct dea_paper *paper, double width_mm, double height_mm,
@@ -191,7 +190,7 @@ void dea_dimensions_scale(const struct dea_paper *paper, double width_mm, const 
     paper->type->fill(paper->canvas, k % 2 ? 0xffffff : INK, 1, true);
     paper->type->stroke(paper->canvas, thin, INK, 0);
   }
-  paper->type->text(paper->canvas, 12, 14.2, note_size, 0, DEA_ALIGN_LEFT, false, GREY, "0");
-  paper->type->text(paper->canvas, 62, 14.2, note_size, 0, DEA_ALIGN_RIGHT, false, GREY, "50 mm");
+  paper->type->text(paper->canvas, 12, 14.2, note_size, DEA_ALIGN_LEFT, false, GREY, "0");
+  paper->type->text(paper->canvas, 62, 14.2, note_size, DEA_ALIGN_RIGHT, false, GREY, "50 mm");
   dea_dimensions_fit(paper, 68, 12, note_size, false, GREY, width_mm - 80, words);
 }

@@ -43,24 +43,21 @@ static void add_head(struct dea_report *report)
 static void add_header(struct dea_report *report)
 {
   struct dea_text *out = &report->text;
-  dea_text_add(out, "<body>\n<a class=\"skip\" href=\"#main\">To the content</a>\n"
-                    "<header><p class=\"kind\">Dielectric elastomer actuator</p>");
-  dea_html_element(out, "h1", report->runs[0].title);
-  if (report->count > 1) {
-    dea_text_add(out, "<p>and %zu more run%s, beside each other</p>", report->count - 1,
-                 report->count > 2 ? "s" : "");
-  }
-  dea_text_add(out, "<p class=\"made\">");
   const struct dea_provenance *p = &report->runs[0].run->result->provenance;
-  dea_html_text(out, p->program);
-  dea_text_add(out, " \302\267 ");
-  dea_html_text(out, p->started);
-  dea_text_add(out, " \302\267 design <span class=\"code\">");
   char start[13];
   snprintf(start, sizeof start, "%.12s", p->input_sha256);
-  dea_html_text(out, start);
-  dea_text_add(out, "</span></p></header>\n<nav aria-label=\"Contents\"><ul></ul></nav>\n"
-                    "<main id=\"main\">\n");
+  dea_html_add(out,
+               "<body>\n<a class=\"skip\" href=\"#main\">To the content</a>\n<header>"
+               "<p class=\"kind\">Dielectric elastomer actuator</p><h1>%s</h1>",
+               report->runs[0].title);
+  if (report->count > 1) {
+    dea_html_add(out, "<p>and %zu more run%s, beside each other</p>", report->count - 1,
+                 report->count > 2 ? "s" : "");
+  }
+  dea_html_add(out,
+               "<p class=\"made\">%s \302\267 %s \302\267 design <span class=\"code\">%s</span></p>"
+               "</header>\n<nav aria-label=\"Contents\"><ul></ul></nav>\n<main id=\"main\">\n",
+               p->program, p->started, start);
 }
 
 /* Where a run comes from: enough to make it again. */
@@ -75,18 +72,16 @@ static dea_status add_provenance(struct dea_report *report, const struct dea_rep
   dea_section_fact(out, "Build", p->build);
   dea_section_fact(out, "Libraries", p->libraries);
   dea_section_fact(out, "Started", p->started);
-  dea_text_add(out, "<dt>Time</dt><dd>");
-  dea_html_number(out, p->wall_s, 3);
-  dea_text_add(out, " s</dd>");
+  dea_html_add(out, "<dt>Time</dt><dd>%.3G s</dd>", p->wall_s);
   dea_section_fact(out, "Command", p->command);
   dea_section_fact(out, "Run folder", run->path);
   dea_section_fact(out, "Design file", run->run->design_file);
   dea_section_fact(out, "SHA-256 of the design", p->input_sha256);
   dea_section_fact(out, "Overrides", p->overrides);
-  dea_text_add(out, "</dl><details><summary>Design file</summary><div class=\"scroll\" "
-                    "tabindex=\"0\" role=\"region\" aria-label=\"Design file\">");
-  dea_html_element(out, "pre", p->input);
-  dea_text_add(out, "</div></details>");
+  dea_html_add(out,
+               "</dl><details><summary>Design file</summary><div class=\"scroll\" tabindex=\"0\" "
+               "role=\"region\" aria-label=\"Design file\"><pre>%s</pre></div></details>",
+               p->input);
   dea_section_end(report);
   return DEA_OK;
 }
@@ -101,9 +96,7 @@ static dea_status add_run(struct dea_report *report, const struct dea_report_run
   dea_text_add(&report->text, "<article id=\"run-%d\" aria-label=\"Run %d\">", run->number,
                run->number);
   if (!alone) {
-    dea_text_add(&report->text, "<h2>%d ", run->number);
-    dea_html_text(&report->text, run->title);
-    dea_text_add(&report->text, "</h2>\n");
+    dea_html_add(&report->text, "<h2>%d %s</h2>\n", run->number, run->title);
   }
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
     DEA_TRY(report->ctx, sections[i](report, run));
@@ -124,9 +117,7 @@ static void add_end(struct dea_report *report)
   dea_section_end(report);
   dea_text_add(out, "</main>\n<footer><p>Written by dea " DEA_VERSION);
   if (report->options->command != NULL) {
-    dea_text_add(out, ": <span class=\"code\">");
-    dea_html_text(out, report->options->command);
-    dea_text_add(out, "</span>");
+    dea_html_add(out, ": <span class=\"code\">%s</span>", report->options->command);
   }
   dea_text_add(out, "</p></footer>\n");
   dea_text_add(out, "<script>%s</script>\n</body>\n</html>\n", dea_asset_script);

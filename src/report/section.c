@@ -1,6 +1,8 @@
 /* How sections and tables begin and end. */
 #include "report/section.h"
 
+#include "plot/plot_svg.h"
+
 #include <string.h>
 
 enum { TABLE_COLUMNS_MAX = 64 };
@@ -8,11 +10,9 @@ enum { TABLE_COLUMNS_MAX = 64 };
 void dea_section_begin(struct dea_report *report, const char *name, int number, const char *title)
 {
   int level = number > 0 ? report->level : 2;
-  dea_text_add(&report->text,
-               "<section id=\"%s-%d\" aria-labelledby=\"%s-%d-h\"><h%d id=\"%s-%d-h\">", name,
-               number, name, number, level, name, number);
-  dea_html_text(&report->text, title);
-  dea_text_add(&report->text, "</h%d>", level);
+  dea_html_add(&report->text,
+               "<section id=\"%s-%d\" aria-labelledby=\"%s-%d-h\"><h%d id=\"%s-%d-h\">%s</h%d>",
+               name, number, name, number, level, name, number, title, level);
 }
 
 void dea_section_end(struct dea_report *report)
@@ -26,23 +26,42 @@ void dea_section_heading(struct dea_report *report, const char *text)
                    text);
 }
 
+dea_status dea_section_plot(struct dea_report *report, struct dea_plot *plot, dea_status status)
+{
+  if (status == DEA_OK && dea_plot_shows(plot)) {
+    dea_plot_add_svg(&report->text, plot, ++report->figures);
+  }
+  dea_plot_destroy(report->ctx, plot);
+  return status;
+}
+
 void dea_section_fact(struct dea_text *out, const char *what, const char *text)
 {
   if (text != NULL && text[0] != '\0') {
-    dea_text_add(out, "<dt>%s</dt>", what);
-    dea_html_element(out, "dd", text);
+    dea_html_add(out, "<dt>%s</dt><dd>%s</dd>", what, text);
   }
 }
 
-void dea_table_begin(struct dea_report *report, const char *caption, const char *header)
+void dea_table_begin(struct dea_report *report, const char *caption)
 {
-  struct dea_text *out = &report->text;
-  report->table = out->length;
-  dea_text_add(out, "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"");
-  dea_html_text(out, caption);
-  dea_text_add(out, "\"><table><caption>");
-  dea_html_text(out, caption);
-  dea_text_add(out, "</caption><thead><tr>%s</tr></thead><tbody>", header);
+  report->table = report->text.length;
+  dea_html_add(&report->text,
+               "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"%s\"><table>"
+               "<caption>%s</caption><thead><tr>",
+               caption, caption);
+}
+
+void dea_table_head(struct dea_report *report, const char *titles)
+{
+  while (*titles != '\0') {
+    const bool number = *titles == '#';
+    titles += number;
+    const size_t length = strcspn(titles, "|");
+    dea_text_add(&report->text, "<th scope=\"col\"%s>%.*s</th>", number ? " class=\"n\"" : "",
+                 (int)length, titles);
+    titles += length + (titles[length] != '\0');
+  }
+  dea_text_add(&report->text, "</tr></thead><tbody>");
 }
 
 /* End of the cell that begins there; NULL: none does. blank: it has nothing to read, or a dash. */

@@ -4,6 +4,7 @@
 
 #include "base/html.h"
 #include "io/csv.h"
+#include "plot/plot.h"
 #include "report/report.h"
 
 struct dea_report {
@@ -25,11 +26,16 @@ void dea_section_end(struct dea_report *report);
 void dea_section_heading(struct dea_report *report, const char *text);
 /* A row of a list of facts, where there is a text. */
 void dea_section_fact(struct dea_text *out, const char *what, const char *text);
-/* A table that scrolls sideways: caption, then the header's cells (ours). */
-void dea_table_begin(struct dea_report *report, const char *caption, const char *header);
+/* A table that scrolls sideways: caption, then the cells of its head (<th>) up to dea_table_head.
+ */
+void dea_table_begin(struct dea_report *report, const char *caption);
+/* Adds cells to the head, "TITLE|#TITLE" (ours) with # before titles of numbers, and ends it. */
+void dea_table_head(struct dea_report *report, const char *titles);
 /* Ends it, and takes out columns in which no row has anything, but for tables with merged cells. */
 void dea_table_end(struct dea_report *report);
 
+/* Adds a plot that shows something, where status is good; destroys it. Returns that status. */
+dea_status dea_section_plot(struct dea_report *report, struct dea_plot *plot, dea_status status);
 /* Figures of a run that belong to a study; NULL: those that stand in no study's section. */
 dea_status dea_section_figures(struct dea_report *report, const struct dea_report_run *run,
                                const char *study);

@@ -1,6 +1,5 @@
 /* Curves: the figures of a run, and those of several runs beside each other. */
 #include "figures/run_figures.h"
-#include "plot/plot_svg.h"
 #include "report/section.h"
 #include "result/observation.h"
 
@@ -102,14 +101,9 @@ static dea_status fill(struct dea_report *report, const struct compared *what,
 static void add_last_points(struct dea_report *report)
 {
   struct dea_text *out = &report->text;
-  dea_table_begin(report, "Last point of every sweep",
-                  "<th scope=\"col\">Run</th><th scope=\"col\">Model</th>"
-                  "<th scope=\"col\" class=\"n\">V (kV)</th>"
-                  "<th scope=\"col\" class=\"n\">strain (%)</th>"
-                  "<th scope=\"col\" class=\"n\">z centre (\302\265m)</th>"
-                  "<th scope=\"col\" class=\"n\">z fibre tip (\302\265m)</th>"
-                  "<th scope=\"col\" class=\"n\">breakdown margin (%)</th>"
-                  "<th scope=\"col\">flags</th>");
+  dea_table_begin(report, "Last point of every sweep");
+  dea_table_head(report, "Run|Model|#V (kV)|#strain (%)|#z centre (\302\265m)|#z fibre tip "
+                         "(\302\265m)|#breakdown margin (%)|flags");
   for (size_t r = 0; r < report->count; r++) {
     const struct dea_result *result = report->runs[r].run->result;
     for (size_t c = 0; c < result->curve_count; c++) {
@@ -119,18 +113,15 @@ static void add_last_points(struct dea_report *report)
       }
       const struct dea_load_point *p = &curve->points[curve->count - 1];
       const bool z = !leaves_out(report, curve, dea_point_column_find("fibre_tip_z_m"));
-      dea_text_add(out, "<tr><th scope=\"row\">%d ", report->runs[r].number);
-      dea_html_text(out, report->runs[r].title);
-      dea_text_add(out, "</th>");
-      dea_html_element(out, "td", curve->model);
-      dea_html_cell(out, 1e-3 * p->voltage_V, 4);
-      dea_html_cell(out, 100 * (p->electrode_stretch - 1), 4);
-      dea_html_cell(out, z ? 1e6 * p->centre_z_m : NAN, 5);
-      dea_html_cell(out, z ? 1e6 * p->fibre_tip_z_m : NAN, 5);
-      dea_html_cell(out, 100 * p->breakdown_margin, 3);
       char words[DEA_FLAGS_SIZE];
-      dea_html_element(out, "td", dea_flags_text(dea_load_point_flags(p), words));
-      dea_text_add(out, "</tr>");
+      dea_html_add(out,
+                   "<tr><th scope=\"row\">%d %s</th><td>%s</td><td class=\"n\">%.4G</td>"
+                   "<td class=\"n\">%.4G</td><td class=\"n\">%.5G</td><td class=\"n\">%.5G</td>"
+                   "<td class=\"n\">%.3G</td><td>%s</td></tr>",
+                   report->runs[r].number, report->runs[r].title, curve->model, 1e-3 * p->voltage_V,
+                   100 * (p->electrode_stretch - 1), z ? 1e6 * p->centre_z_m : NAN,
+                   z ? 1e6 * p->fibre_tip_z_m : NAN, 100 * p->breakdown_margin,
+                   dea_flags_text(dea_load_point_flags(p), words));
     }
   }
   dea_table_end(report);
@@ -140,12 +131,7 @@ static dea_status add_compared(struct dea_report *report, const struct compared 
 {
   struct dea_plot *plot;
   DEA_TRY(report->ctx, dea_plot_create(report->ctx, what->key, what->caption, &plot));
-  dea_status status = fill(report, what, plot);
-  if (status == DEA_OK && dea_plot_shows(plot)) {
-    dea_plot_add_svg(&report->text, plot, ++report->figures);
-  }
-  dea_plot_destroy(report->ctx, plot);
-  return status;
+  return dea_section_plot(report, plot, fill(report, what, plot));
 }
 
 /* What the monitors of the first sweep that has some show. */

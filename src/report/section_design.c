@@ -25,18 +25,16 @@ static void add_values(struct dea_report *report, const struct dea_report_run *r
 {
   const struct dea_listing *values = &run->design->values;
   struct dea_text *out = &report->text;
-  dea_table_begin(report, "Every value of the design and where it comes from",
-                  "<th scope=\"col\">Key</th><th scope=\"col\">Value</th>"
-                  "<th scope=\"col\">From</th>");
+  dea_table_begin(report, "Every value of the design and where it comes from");
+  dea_table_head(report, "Key|Value|From");
   for (size_t i = 0; i < values->count; i++) {
     const struct dea_listed *value = &values->items[i];
     char origin[40];
-    dea_text_add(out, "<tr class=\"%s\">",
-                 value->origin == DEA_GIVEN || value->origin == DEA_OVERRIDE ? "" : "faint");
-    dea_html_element(out, "th scope=\"row\" class=\"code\"", value->path);
-    dea_html_element(out, "td", value->text);
-    dea_html_element(out, "td", origin_of(value, origin, sizeof origin));
-    dea_text_add(out, "</tr>");
+    dea_html_add(out,
+                 "<tr class=\"%s\"><th scope=\"row\" class=\"code\">%s</th><td>%s</td><td>%s</td>"
+                 "</tr>",
+                 value->origin == DEA_GIVEN || value->origin == DEA_OVERRIDE ? "" : "faint",
+                 value->path, value->text, origin_of(value, origin, sizeof origin));
   }
   dea_table_end(report);
 }
@@ -45,10 +43,10 @@ dea_status dea_section_design(struct dea_report *report, const struct dea_report
 {
   dea_section_begin(report, "design", run->number, "Design");
   if (run->device == NULL) {
-    dea_text_add(&report->text, "<p class=\"note\">The design cannot be built again, so that there "
-                                "is no drawing: ");
-    dea_html_text(&report->text, run->missing);
-    dea_text_add(&report->text, ".</p>");
+    dea_html_add(&report->text,
+                 "<p class=\"note\">The design cannot be built again, so that there is no drawing: "
+                 "%s.</p>",
+                 run->missing);
     dea_section_end(report);
     return DEA_OK;
   }
@@ -67,14 +65,10 @@ dea_status dea_section_design(struct dea_report *report, const struct dea_report
 
 static void add_notes(struct dea_text *out, const struct dea_data_notes *notes)
 {
-  dea_html_element(out, "td", notes->uncertainty);
-  dea_html_element(out, "td", notes->range);
-  dea_text_add(out, "<td>");
-  dea_html_text(out, notes->source != NULL ? notes->source : "no source");
+  dea_html_add(out, "<td>%s</td><td>%s</td><td>%s", notes->uncertainty, notes->range,
+               notes->source != NULL ? notes->source : "no source");
   if (notes->note != NULL) {
-    dea_text_add(out, "<br><small>");
-    dea_html_text(out, notes->note);
-    dea_text_add(out, "</small>");
+    dea_html_add(out, "<br><small>%s</small>", notes->note);
   }
   dea_text_add(out, "</td></tr>");
 }
@@ -82,13 +76,9 @@ static void add_notes(struct dea_text *out, const struct dea_data_notes *notes)
 /* Row up to its notes: what, value with unit. */
 static void add_row(struct dea_text *out, const char *what, double value, const char *unit)
 {
-  dea_text_add(out, "<tr>");
-  dea_html_element(out, "th scope=\"row\"", what);
-  dea_text_add(out, "<td class=\"n\">");
-  dea_html_number(out, value, 6);
-  dea_text_add(out, "%s", strcmp(unit, "1") != 0 ? " " : "");
-  dea_html_text(out, strcmp(unit, "1") != 0 ? unit : "");
-  dea_text_add(out, "</td>");
+  const bool none = strcmp(unit, "1") == 0;
+  dea_html_add(out, "<tr><th scope=\"row\">%s</th><td class=\"n\">%.6G%s%s</td>", what, value,
+               none ? "" : " ", none ? "" : unit);
 }
 
 /* A pressure in the unit that people read. */
@@ -122,12 +112,12 @@ static void add_viscosity(struct dea_text *out, const struct dea_viscosity_set *
   for (size_t i = 0; i < set->branch_count; i++) {
     const struct dea_branch_data *branch = &set->branches[i];
     bool share = !isnan(branch->ratio.si);
-    dea_text_add(out, "<tr><th scope=\"row\">viscosity%s: branch %zu</th><td class=\"n\">",
-                 set->assumed.value == 1 ? " (assumed)" : "", i + 1);
-    dea_html_number(out, share ? 100.0 * branch->ratio.si : 1e-3 * branch->modulus_Pa.si, 6);
-    dea_text_add(out, "%s", share ? " % of the shear modulus, " : " kPa, ");
-    dea_html_number(out, branch->time_s.si, 6);
-    dea_text_add(out, " s</td>");
+    dea_html_add(out,
+                 "<tr><th scope=\"row\">viscosity%s: branch %zu</th><td class=\"n\">%.6G %s, %.6G s"
+                 "</td>",
+                 set->assumed.value == 1 ? " (assumed)" : "", i + 1,
+                 share ? 100.0 * branch->ratio.si : 1e-3 * branch->modulus_Pa.si,
+                 share ? "% of the shear modulus" : "kPa", branch->time_s.si);
     add_notes(out, &set->notes);
   }
 }
@@ -168,10 +158,8 @@ static void add_material(struct dea_report *report, const struct dea_material_da
   snprintf(caption, sizeof caption, "%s: %s%s%s%s", part, used->name,
            data->title.text[0] != '\0' ? " (" : "", data->title.text,
            data->title.text[0] != '\0' ? ")" : "");
-  dea_table_begin(report, caption,
-                  "<th scope=\"col\">Property</th><th scope=\"col\" class=\"n\">Value</th>"
-                  "<th scope=\"col\">Uncertainty</th><th scope=\"col\">Range</th>"
-                  "<th scope=\"col\">Source</th>");
+  dea_table_begin(report, caption);
+  dea_table_head(report, "Property|#Value|Uncertainty|Range|Source");
   if (used->law != NULL) {
     FIND_SET(data->laws, data->law_count, strcmp(data->laws[i].id.text, used->law_id) == 0, law)
     add_law(out, &data->laws[law]);

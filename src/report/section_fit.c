@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FILE_MAX = 64 << 20, DIGITS = 6 };
+enum { FILE_MAX = 64 << 20 };
 
 static double number_of(const json_t *object, const char *key)
 {
@@ -16,9 +16,15 @@ static double number_of(const json_t *object, const char *key)
   return json_is_number(value) ? json_number_value(value) : (double)NAN;
 }
 
+/* NULL: there is no such text. */
+static const char *text_of(const json_t *object, const char *key)
+{
+  return json_string_value(json_object_get(object, key));
+}
+
 static void add_fact(struct dea_text *out, const char *what, const json_t *root, const char *key)
 {
-  dea_section_fact(out, what, json_string_value(json_object_get(root, key)));
+  dea_section_fact(out, what, text_of(root, key));
 }
 
 static void add_facts(struct dea_text *out, const json_t *root)
@@ -58,26 +64,23 @@ static const char *known_as(const json_t *value)
 static void add_parameters(struct dea_report *report, const json_t *list)
 {
   struct dea_text *out = &report->text;
-  dea_table_begin(report, "What was fitted, with one standard uncertainty",
-                  "<th scope=\"col\">parameter</th><th scope=\"col\">unit</th><th scope=\"col\">as "
-                  "designed</th><th scope=\"col\">value</th><th scope=\"col\">&plusmn;</th><th "
-                  "scope=\"col\">68 %: from</th><th scope=\"col\">to</th>");
+  dea_table_begin(report, "What was fitted, with one standard uncertainty");
+  dea_table_head(report, "parameter|unit|as designed|value|&plusmn;|68 %: from|to");
   for (size_t i = 0; i < json_array_size(list); i++) {
     const json_t *value = json_array_get(list, i);
     const char *known = known_as(value);
-    dea_text_add(out, "<tr>");
-    dea_html_element(out, "th scope=\"row\"", json_string_value(json_object_get(value, "name")));
-    dea_html_element(out, "td", json_string_value(json_object_get(value, "unit")));
-    dea_html_cell(out, number_of(value, "designed"), DIGITS);
-    dea_html_cell(out, number_of(value, "value"), DIGITS);
+    dea_html_add(out,
+                 "<tr><th scope=\"row\">%s</th><td>%s</td><td class=\"n\">%.6G</td>"
+                 "<td class=\"n\">%.6G</td>",
+                 text_of(value, "name"), text_of(value, "unit"), number_of(value, "designed"),
+                 number_of(value, "value"));
     if (known != NULL) {
       dea_html_element(out, "td", known);
     } else {
       dea_html_cell(out, number_of(value, "standard_uncertainty"), 3);
     }
-    dea_html_cell(out, number_of(value, "interval_low"), DIGITS);
-    dea_html_cell(out, number_of(value, "interval_high"), DIGITS);
-    dea_text_add(out, "</tr>");
+    dea_html_add(out, "<td class=\"n\">%.6G</td><td class=\"n\">%.6G</td></tr>",
+                 number_of(value, "interval_low"), number_of(value, "interval_high"));
   }
   dea_table_end(report);
 }
@@ -90,20 +93,15 @@ static void add_correlations(struct dea_report *report, const json_t *root)
   if (json_array_size(rows) < 2) {
     return;
   }
-  struct dea_text header = {.ctx = out->ctx};
-  dea_text_add(&header, "<th scope=\"col\"></th>");
+  dea_table_begin(report, "Correlations");
+  dea_text_add(out, "<th scope=\"col\"></th>");
   for (size_t i = 0; i < json_array_size(names); i++) {
-    dea_html_element(&header, "th scope=\"col\"",
-                     json_string_value(json_object_get(json_array_get(names, i), "name")));
+    dea_html_element(out, "th scope=\"col\"", text_of(json_array_get(names, i), "name"));
   }
-  dea_table_begin(report, "Correlations", dea_text_get(&header));
-  out->failed = out->failed || header.failed;
-  dea_text_free(&header);
+  dea_table_head(report, "");
   for (size_t i = 0; i < json_array_size(rows); i++) {
     const json_t *row = json_array_get(rows, i);
-    dea_text_add(out, "<tr>");
-    dea_html_element(out, "th scope=\"row\"",
-                     json_string_value(json_object_get(json_array_get(names, i), "name")));
+    dea_html_add(out, "<tr><th scope=\"row\">%s</th>", text_of(json_array_get(names, i), "name"));
     for (size_t k = 0; k < json_array_size(row); k++) {
       dea_html_cell(out, json_number_value(json_array_get(row, k)), 3);
     }
@@ -130,24 +128,16 @@ static void add_advice(struct dea_text *out, const json_t *root)
   }
   for (size_t i = 0; i < json_array_size(pairs); i++) {
     const json_t *pair = json_array_get(pairs, i);
-    const char *tells = json_string_value(json_object_get(pair, "would_tell"));
-    dea_text_add(out, "<li>");
-    dea_html_text(out, json_string_value(json_object_get(pair, "first")));
-    dea_text_add(out, " and ");
-    dea_html_text(out, json_string_value(json_object_get(pair, "second")));
-    dea_text_add(out, " are not told apart%s",
-                 tells != NULL && tells[0] != '\0' ? "; this would tell: " : "");
-    dea_html_text(out, tells);
-    dea_text_add(out, "</li>");
+    const char *tells = text_of(pair, "would_tell");
+    dea_html_add(out, "<li>%s and %s are not told apart%s%s</li>", text_of(pair, "first"),
+                 text_of(pair, "second"),
+                 tells != NULL && tells[0] != '\0' ? "; this would tell: " : "", tells);
   }
   for (size_t k = 0; k < 2; k++) {
     const json_t *first = json_array_get(json_object_get(advice, next[k][0]), 0);
     if (first != NULL) {
-      dea_text_add(out, "<li>the %s that would tell most: ", next[k][1]);
-      dea_html_text(out, json_string_value(json_object_get(first, next[k][1])));
-      dea_text_add(out, " (error bars times ");
-      dea_html_number(out, number_of(first, "error_bars_times"), 2);
-      dea_text_add(out, ")</li>");
+      dea_html_add(out, "<li>the %s that would tell most: %s (error bars times %.2G)</li>",
+                   next[k][1], text_of(first, next[k][1]), number_of(first, "error_bars_times"));
     }
   }
   dea_text_add(out, "</ul>");
@@ -168,13 +158,9 @@ static dea_status add_figure(struct dea_report *report, const char *folder, cons
     status = dea_file_read(report->ctx, path, FILE_MAX, &bytes, &length);
   }
   if (status == DEA_OK && bytes != NULL) {
-    dea_text_add(out, "<figure><img alt=\"");
-    dea_html_text(out, what);
-    dea_text_add(out, "\" src=\"data:image/svg+xml;base64,");
+    dea_html_add(out, "<figure><img alt=\"%s\" src=\"data:image/svg+xml;base64,", what);
     dea_html_base64(out, bytes, length);
-    dea_text_add(out, "\"/><figcaption>");
-    dea_html_text(out, what);
-    dea_text_add(out, "</figcaption></figure>");
+    dea_html_add(out, "\"/><figcaption>%s</figcaption></figure>", what);
   }
   dea_free(report->ctx, bytes);
   dea_free(report->ctx, path);

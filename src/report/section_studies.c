@@ -1,7 +1,6 @@
 /* What studies have made tables of, a section each: its figures and its tables, without knowing the
  * study. */
 #include "figures/run_figures.h"
-#include "plot/plot_svg.h"
 #include "report/section.h"
 
 #include <ctype.h>
@@ -35,12 +34,7 @@ static dea_status add_figure(struct dea_report *report, const struct dea_figure 
 {
   struct dea_plot *plot;
   DEA_TRY(report->ctx, dea_plot_create(report->ctx, figure->name, figure->caption, &plot));
-  dea_status status = figure->build(report->ctx, result, plot);
-  if (status == DEA_OK && dea_plot_shows(plot)) {
-    dea_plot_add_svg(&report->text, plot, ++report->figures);
-  }
-  dea_plot_destroy(report->ctx, plot);
-  return status;
+  return dea_section_plot(report, plot, figure->build(report->ctx, result, plot));
 }
 
 static bool has_tables(const struct dea_result *result, const char *study)
@@ -95,12 +89,9 @@ static void add_header(struct dea_text *out, const struct dea_result_table *tabl
     struct dea_text title = {.ctx = out->ctx};
     if (on_page(column)) {
       dea_result_table_column_title(column, &title);
-      dea_text_add(out, "<th scope=\"col\"%s colspan=\"%zu\" title=\"",
-                   is_text(column) ? "" : " class=\"n\"", dea_result_table_values(table, c));
-      dea_html_text(out, column->meaning);
-      dea_text_add(out, "\">");
-      dea_html_text(out, dea_text_get(&title));
-      dea_text_add(out, "</th>");
+      dea_text_add(out, "<th scope=\"col\"%s", is_text(column) ? "" : " class=\"n\"");
+      dea_html_add(out, " colspan=\"%zu\" title=\"%s\">%s</th>", dea_result_table_values(table, c),
+                   column->meaning, dea_text_get(&title));
     }
     out->failed = out->failed || title.failed;
     dea_text_free(&title);
@@ -128,9 +119,10 @@ static void add_cell(struct dea_text *out, const struct dea_result_table *table,
 static void add_rows(struct dea_report *report, const struct dea_result_table *table,
                      const char *caption)
 {
-  struct dea_text *out = &report->text, header = {.ctx = report->ctx};
-  add_header(&header, table);
-  dea_table_begin(report, caption, dea_text_get(&header));
+  struct dea_text *out = &report->text;
+  dea_table_begin(report, caption);
+  add_header(out, table);
+  dea_table_head(report, "");
   for (size_t row = 0; row < table->row_count; row++) {
     dea_text_add(out, "<tr>");
     for (size_t c = 0; c < table->type.column_count; c++) {
@@ -142,8 +134,6 @@ static void add_rows(struct dea_report *report, const struct dea_result_table *t
     dea_text_add(out, "</tr>");
   }
   dea_table_end(report);
-  out->failed = out->failed || header.failed;
-  dea_text_free(&header);
 }
 
 /* A table of one row: cards, and below them what fills lines. */
@@ -162,13 +152,9 @@ static void add_facts(struct dea_report *report, const struct dea_result_table *
       if (wanted && words == 1) {
         dea_html_element(out, "p class=\"verdict\"", dea_text_get(&cell));
       } else if (wanted) {
-        dea_text_add(out, "<div class=\"card\"><dt>");
-        dea_html_text(out, column->title);
-        dea_text_add(out, "</dt><dd>");
-        dea_html_text(out, dea_text_get(&cell));
-        dea_text_add(out, " <span class=\"unit\">");
-        dea_html_text(out, strcmp(unit, "1") != 0 ? unit : "");
-        dea_text_add(out, "</span></dd></div>");
+        dea_html_add(
+            out, "<div class=\"card\"><dt>%s</dt><dd>%s <span class=\"unit\">%s</span></dd></div>",
+            column->title, dea_text_get(&cell), strcmp(unit, "1") != 0 ? unit : "");
       }
       out->failed = out->failed || cell.failed;
       dea_text_free(&cell);

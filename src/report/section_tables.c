@@ -18,9 +18,9 @@ static void add_card_with(struct dea_text *out, const char *what, double value, 
                           const char *unit, int digits)
 {
   if (isfinite(value)) {
-    dea_text_add(out, "<div class=\"card\"><dt>%s</dt><dd>", what);
+    dea_html_add(out, "<div class=\"card\"><dt>%s</dt><dd>", what);
     dea_html_estimate(out, value, error, digits);
-    dea_text_add(out, " <span class=\"unit\">%s</span></dd></div>", unit);
+    dea_html_add(out, " <span class=\"unit\">%s</span></dd></div>", unit);
   }
 }
 
@@ -46,15 +46,11 @@ static void add_headlines(struct dea_report *report, const struct dea_curve *swe
   for (size_t i = 0; i < count; i++) {
     const struct dea_column *c = dea_column_at(report->ctx, columns[i]);
     const int error = dea_point_error_column(report->ctx, columns[i]);
-    struct dea_text what = {.ctx = report->ctx};
     char unit[DEA_COLUMN_UNIT_SIZE];
-    dea_html_text(&what, c->header);
     dea_figure_unit(c->display_unit, unit);
-    add_card_with(&report->text, dea_text_get(&what), c->factor * dea_point_get(p, columns[i]),
+    add_card_with(&report->text, c->header, c->factor * dea_point_get(p, columns[i]),
                   error >= 0 ? c->factor * dea_point_get(p, error) : NAN,
                   strcmp(unit, "1") == 0 ? "" : unit, digits);
-    report->text.failed = report->text.failed || what.failed;
-    dea_text_free(&what);
   }
 }
 
@@ -110,12 +106,9 @@ static void add_glance(struct dea_report *report, const struct dea_result *resul
   const struct dea_curve *path = dea_result_find(result, sweep->model, "path");
   double last_V = sweep->points[sweep->count - 1].voltage_V;
   dea_trust_text(&trust, &text);
-  dea_text_add(out, "<p class=\"%s\"><strong>Model ",
-               trust.doubts != 0 || trust.dangers != 0 ? "warning" : "verdict");
-  dea_html_text(out, sweep->model);
-  dea_text_add(out, "</strong>: ");
-  dea_html_text(out, dea_text_get(&text));
-  dea_text_add(out, ".</p>");
+  dea_html_add(out, "<p class=\"%s\"><strong>Model %s</strong>: %s.</p>",
+               trust.doubts != 0 || trust.dangers != 0 ? "warning" : "verdict", sweep->model,
+               dea_text_get(&text));
   out->failed = out->failed || text.failed;
   dea_text_free(&text);
   add_cards_at(report, result, sweep, trust.good_V,
@@ -149,11 +142,8 @@ dea_status dea_section_glance(struct dea_report *report, const struct dea_report
       add_glance(report, result, curve);
     }
     if (!curve->complete) {
-      dea_text_add(&report->text, "<p class=\"warning\">Model ");
-      dea_html_text(&report->text, curve->model);
-      dea_text_add(&report->text, ", %s, was stopped: ", curve->kind);
-      dea_html_text(&report->text, curve->stopped);
-      dea_text_add(&report->text, "</p>");
+      dea_html_add(&report->text, "<p class=\"warning\">Model %s, %s, was stopped: %s</p>",
+                   curve->model, curve->kind, curve->stopped);
     }
   }
   if (run->note_count > 0) {
@@ -172,14 +162,12 @@ dea_status dea_section_glance(struct dea_report *report, const struct dea_report
 static void add_limit(struct dea_text *out, const char *model, const char *what,
                       const struct dea_event *event, double last_V)
 {
-  dea_text_add(out, "<tr>");
-  dea_html_element(out, "th scope=\"row\"", model);
-  dea_text_add(out, "<td>%s</td>", what);
   double at_V = event->point.voltage_V;
-  dea_html_cell(out, 1e-3 * at_V, 5);
-  dea_html_cell(out, event->point.electrode_stretch, 5);
-  dea_html_cell(out, 1e-3 * (at_V - last_V), 4);
-  dea_text_add(out, "<td class=\"%s\">%s</td></tr>", last_V < at_V ? "good" : "bad",
+  dea_html_add(out,
+               "<tr><th scope=\"row\">%s</th><td>%s</td><td class=\"n\">%.5G</td>"
+               "<td class=\"n\">%.5G</td><td class=\"n\">%.4G</td><td class=\"%s\">%s</td></tr>",
+               model, what, 1e-3 * at_V, event->point.electrode_stretch, 1e-3 * (at_V - last_V),
+               last_V < at_V ? "good" : "bad",
                last_V < at_V ? "the sweep stays below" : "the sweep goes beyond");
 }
 
@@ -223,27 +211,19 @@ static void add_worst(struct dea_text *out, const struct dea_curve *sweep,
       tension_V = p->voltage_V;
     }
   }
-  dea_text_add(out, "<li>Model ");
-  dea_html_text(out, sweep->model);
-  dea_text_add(out, ": ");
+  dea_html_add(out, "<li>Model %s: ", sweep->model);
   dea_text_add(out, unstable == 0 ? "all %zu points of the sweep are stable" : "of %zu points",
                sweep->count);
   if (unstable > 0) {
     dea_text_add(out, " %zu are unstable", unstable);
   }
   if (isfinite(margin)) {
-    dea_text_add(out, "; smallest breakdown margin ");
-    dea_html_number(out, 100 * margin, 3);
-    dea_text_add(out, " %% at ");
-    dea_html_number(out, 1e-3 * margin_V, 4);
-    dea_text_add(out, " kV");
+    dea_html_add(out, "; smallest breakdown margin %.3G %% at %.4G kV", 100 * margin,
+                 1e-3 * margin_V);
   }
   if (isfinite(tension)) {
-    dea_text_add(out, "; smallest tension ");
-    dea_html_number(out, tension, 3);
-    dea_text_add(out, " N/m at ");
-    dea_html_number(out, 1e-3 * tension_V, 4);
-    dea_text_add(out, " kV%s", tension < 0 ? ": a part of the film is slack there" : "");
+    dea_html_add(out, "; smallest tension %.3G N/m at %.4G kV%s", tension, 1e-3 * tension_V,
+                 tension < 0 ? ": a part of the film is slack there" : "");
   }
   if (path != NULL && path->count > 0) {
     add_unmet(out, path);
@@ -317,14 +297,9 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
       continue;
     }
     if (!any) {
-      dea_table_begin(report,
-                      "First event of each kind along the equilibrium path; of models without one, "
-                      "the first point of the sweep beyond it",
-                      "<th scope=\"col\">Model</th><th scope=\"col\">Limit</th>"
-                      "<th scope=\"col\" class=\"n\">V (kV)</th>"
-                      "<th scope=\"col\" class=\"n\">electrode stretch</th>"
-                      "<th scope=\"col\" class=\"n\">margin (kV)</th>"
-                      "<th scope=\"col\">Sweep</th>");
+      dea_table_begin(report, "First event of each kind along the equilibrium path; of models "
+                              "without one, the first point of the sweep beyond it");
+      dea_table_head(report, "Model|Limit|#V (kV)|#electrode stretch|#margin (kV)|Sweep");
       any = true;
     }
     add_model_limits(out, result, curve->model);
@@ -343,47 +318,36 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
   return DEA_OK;
 }
 
-/* Columns of a table of all points, with their titles in `header`: those that have a number.
- * Owned by the caller, NULL on failure. */
-static bool *find_shown(struct dea_report *report, const struct dea_result *result,
-                        const struct dea_curve *curve, struct dea_text *header)
+/* Columns of a table of all points: those that have a number. */
+static bool is_shown(const struct dea_result *result, const struct dea_curve *curve, int column)
 {
-  const int count = dea_column_count(report->ctx);
-  bool *shown = dea_alloc(report->ctx, (size_t)count, sizeof *shown);
-  for (int c = 0; shown != NULL && c < count; c++) {
-    char title[DEA_COLUMN_TITLE_SIZE];
-    shown[c] =
-        dea_points_have(curve->points, curve->count, c) && !dea_figure_leaves_out(result, curve, c);
-    dea_column_title(dea_column_at(report->ctx, c), title, sizeof title);
-    if (shown[c]) {
-      dea_html_element(header, "th scope=\"col\" class=\"n\"", title);
-    }
-  }
-  return shown;
+  return dea_points_have(curve->points, curve->count, column) &&
+         !dea_figure_leaves_out(result, curve, column);
 }
 
 static dea_status add_curve_points(struct dea_report *report, const struct dea_result *result,
                                    const struct dea_curve *curve)
 {
-  struct dea_text *out = &report->text, header = {.ctx = report->ctx};
-  char caption[3 * DEA_NAME_SIZE];
-  bool *shown = find_shown(report, result, curve, &header);
-  if (shown == NULL) {
-    dea_text_free(&header);
-    return DEA_E_MEMORY;
-  }
-  dea_html_element(&header, "th scope=\"col\"", "stable");
-  dea_html_element(&header, "th scope=\"col\"", "trusted");
-  out->failed = out->failed || header.failed;
+  struct dea_text *out = &report->text;
+  const int count = dea_column_count(report->ctx);
+  char caption[3 * DEA_NAME_SIZE], title[DEA_COLUMN_TITLE_SIZE];
+  bool *shown = dea_alloc(report->ctx, (size_t)count, sizeof *shown);
+  DEA_TRY_MEMORY(shown != NULL);
   snprintf(caption, sizeof caption, "Model %s, %s: %zu points", curve->model, curve->kind,
            curve->count);
-  dea_text_add(out, "<details><summary>");
-  dea_html_text(out, caption);
-  dea_text_add(out, "</summary>");
-  dea_table_begin(report, caption, dea_text_get(&header));
+  dea_html_add(out, "<details><summary>%s</summary>", caption);
+  dea_table_begin(report, caption);
+  for (int c = 0; c < count; c++) {
+    shown[c] = is_shown(result, curve, c);
+    dea_column_title(dea_column_at(report->ctx, c), title, sizeof title);
+    if (shown[c]) {
+      dea_html_element(out, "th scope=\"col\" class=\"n\"", title);
+    }
+  }
+  dea_table_head(report, "stable|trusted");
   for (size_t i = 0; i < curve->count; i++) {
     dea_text_add(out, "<tr>");
-    for (int c = 0; c < dea_column_count(report->ctx); c++) {
+    for (int c = 0; c < count; c++) {
       if (shown[c]) {
         dea_html_cell(
             out, dea_column_at(report->ctx, c)->factor * dea_point_get(&curve->points[i], c), 5);
@@ -398,7 +362,6 @@ static dea_status add_curve_points(struct dea_report *report, const struct dea_r
   }
   dea_table_end(report);
   dea_text_add(out, "</details>");
-  dea_text_free(&header);
   dea_free(report->ctx, shown);
   return DEA_OK;
 }

@@ -79,17 +79,13 @@ static void add_row(struct dea_text *out, const struct threshold *t, const struc
   if (!isfinite(has)) {
     return;
   }
-  dea_text_add(out, "<tr><th scope=\"row\">%s</th><td class=\"n\">%g %s</td>", t->what,
-               factor * t->least, unit);
-  dea_html_element(out, "td", r->model);
-  dea_text_add(out, "<td class=\"n\">");
-  dea_html_number(out, factor * has, 3);
-  dea_text_add(out, " %s</td><td class=\"n\">", unit);
-  dea_html_number(out, 1e-3 * (t->force ? r->force_V : r->displacement_V), 4);
-  dea_text_add(out, " kV</td><td class=\"n\">");
-  dea_html_number(out, has / t->least, 3);
   bool enough = has >= t->least, broken = t->force ? r->force_broken : r->displacement_broken;
-  dea_text_add(out, "</td><td class=\"%s\">%s%s</td><td>%s%s%s</td></tr>",
+  dea_html_add(out,
+               "<tr><th scope=\"row\">%s</th><td class=\"n\">%g %s</td><td>%s</td>"
+               "<td class=\"n\">%.3G %s</td><td class=\"n\">%.4G kV</td><td class=\"n\">%.3G</td>"
+               "<td class=\"%s\">%s%s</td><td>%s%s%s</td></tr>",
+               t->what, factor * t->least, unit, r->model, factor * has, unit,
+               1e-3 * (t->force ? r->force_V : r->displacement_V), has / t->least,
                !enough              ? "bad"
                : r->bound || broken ? ""
                                     : "good",
@@ -134,19 +130,14 @@ static size_t add_frequency(struct dea_text *out, const struct dea_result *resul
     }
     double left = left_at_touch(points, first, end);
     if (isfinite(left)) {
-      dea_text_add(out, "%s about ", said++ > 0 ? ";" : " Of a small AC excitation of the voltage");
-      dea_html_number(out, 1e-3 * points[first].voltage_V, 3);
-      dea_text_add(out, " kV the centre follows at 10 Hz by ");
-      dea_html_number(out, left, 4);
-      dea_text_add(out, " times its motion at ");
-      dea_html_number(out, points[first].frequency_Hz, 2);
-      dea_text_add(out, " Hz");
+      dea_html_add(
+          out, "%s about %.3G kV the centre follows at 10 Hz by %.4G times its motion at %.2G Hz",
+          said++ > 0 ? ";" : " Of a small AC excitation of the voltage",
+          1e-3 * points[first].voltage_V, left, points[first].frequency_Hz);
     }
   }
   if (said > 0) {
-    dea_text_add(out, " (study frequency of model ");
-    dea_html_text(out, model);
-    dea_text_add(out, ").");
+    dea_html_add(out, " (study frequency of model %s).", model);
   }
   return said;
 }
@@ -200,11 +191,8 @@ dea_status dea_section_touch(struct dea_report *report, const struct dea_report_
   }
   dea_section_begin(report, "touch", run->number, "Touch: can a finger feel it?");
   add_introduction(&report->text, result, models, count);
-  dea_table_begin(report, "Thresholds of touch and what this actuator reaches",
-                  "<th scope=\"col\">Threshold</th><th scope=\"col\" class=\"n\">Needed</th>"
-                  "<th scope=\"col\">Model</th><th scope=\"col\" class=\"n\">Reached</th>"
-                  "<th scope=\"col\" class=\"n\">at</th><th scope=\"col\" class=\"n\">Ratio</th>"
-                  "<th scope=\"col\">Verdict</th><th scope=\"col\">Source; how</th>");
+  dea_table_begin(report, "Thresholds of touch and what this actuator reaches");
+  dea_table_head(report, "Threshold|#Needed|Model|#Reached|#at|#Ratio|Verdict|Source; how");
   for (size_t t = 0; t < THRESHOLDS; t++) {
     for (size_t m = 0; m < count; m++) {
       if (!predicted || !reaches[m].bound) {

@@ -484,8 +484,8 @@ static struct dea_contour contour_of(const char *part, enum dea_layer layer, siz
 {
   const struct dea_part *p = &workshop->part[part_index(part)];
   for (size_t i = 0; i < p->contour_count; i++) {
-    if (p->contour[i].layer == layer && p->contour[i].count > 2 && number-- == 0) {
-      return dea_part_contour_get(p, i);
+    if (p->contour[i].layer == layer && p->contour[i].path.count > 2 && number-- == 0) {
+      return p->contour[i].path;
     }
   }
   fail_msg("no such contour in '%s'", part);

@@ -2,16 +2,24 @@
 #include "design_text.h"
 #include "fabricate/part.h"
 
+static void add_circle(struct dea_part *part, enum dea_layer layer, double x, double radius)
+{
+  static const struct dea_location here = {"t.yaml", 3, 4};
+  const struct dea_vertex v[2] = {{x + radius, 0, 1, here}, {x - radius, 0, 1, here}};
+  const struct dea_contour circle = {v, 2, true};
+  dea_part_add(part, layer, &circle);
+}
+
 /* A disc of 10 mm radius with two holes. */
 static void expect_holes(double x0, double r0, double x1, double r1, const char *message)
 {
-  static const struct dea_location here = {"t.yaml", 3, 4};
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  struct dea_part part = {.ctx = ctx, .name = "plate"};
-  dea_part_circle(&part, DEA_LAYER_CUT_OUTER, 0, 0, 10e-3, here);
-  dea_part_circle(&part, DEA_LAYER_CUT_INNER, x0, 0, r0, here);
-  dea_part_circle(&part, DEA_LAYER_CUT_INNER, x1, 0, r1, here);
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_part part = {.memory = &memory, .name = "plate"};
+  add_circle(&part, DEA_LAYER_CUT_OUTER, 0, 10e-3);
+  add_circle(&part, DEA_LAYER_CUT_INNER, x0, r0);
+  add_circle(&part, DEA_LAYER_CUT_INNER, x1, r1);
   assert_int_equal(dea_part_check(&part, 0.5e-3, 0.2e-3), DEA_OK);
   if (message != NULL) {
     const struct dea_finding *finding = find_error(ctx, message);
@@ -23,7 +31,7 @@ static void expect_holes(double x0, double r0, double x1, double r1, const char 
   } else {
     assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
   }
-  dea_part_free(&part);
+  dea_arena_free(&memory);
   dea_context_destroy(ctx);
 }
 

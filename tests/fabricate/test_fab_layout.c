@@ -40,7 +40,7 @@ static double layer_area(const struct dea_part *part, enum dea_layer layer, doub
   box[0] = box[1] = INFINITY;
   box[2] = box[3] = -INFINITY;
   for (size_t i = 0; i < part->contour_count; i++) {
-    const struct dea_contour contour = dea_part_contour_get(part, i);
+    const struct dea_contour contour = part->contour[i].path;
     if (part->contour[i].layer == layer) {
       area += dea_contour_area_m2(&contour);
       dea_contour_grow_box(&contour, box);
@@ -63,7 +63,7 @@ TEST(test_unstretched)
   // what is below is seen from there: its middle lies at -8 mm then; marks are round when stretched
   const struct dea_part *bottom = find("stencil-film-bottom");
   assert_true(bottom->mirrored);
-  const struct dea_contour opening = dea_part_contour_get(bottom, 0);
+  const struct dea_contour opening = bottom->contour[0].path;
   double place[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
   dea_contour_grow_box(&opening, place);
   assert_close(place[0], -14e-3 / l1, 1e-12, 0);
@@ -117,7 +117,7 @@ TEST(test_turned_axes)
   const struct dea_part *blank = find("blank-film");
   const double c = cos(pi / 6), s = sin(pi / 6);
   for (size_t i = 0; i < blank->contour_count; i++) {
-    const struct dea_contour contour = dea_part_contour_get(blank, i);
+    const struct dea_contour contour = blank->contour[i].path;
     for (size_t k = 0; k < contour.count && blank->contour[i].layer == DEA_LAYER_CUT_OUTER; k++) {
       double x = contour.vertex[k].x_m, y = contour.vertex[k].y_m;
       double first = 1.2 * (c * x + s * y), across = 1.5 * (c * y - s * x); // along the axes

@@ -223,7 +223,7 @@ static double text_width(struct dea_canvas *canvas, double size_mm, bool bold, c
   return extents.x_advance;
 }
 
-static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm, double angle,
+static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double size_mm,
                  enum dea_align align, bool bold, unsigned colour, const char *words)
 {
   char good[WORDS_SIZE];
@@ -231,7 +231,6 @@ static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double siz
   double width = align == DEA_ALIGN_LEFT ? 0 : text_width(canvas, size_mm, bold, words);
   cairo_save(canvas->cr);
   cairo_translate(canvas->cr, x_mm, y_mm);
-  cairo_rotate(canvas->cr, angle);
   cairo_scale(canvas->cr, 1, -1);
   choose_font(canvas, size_mm, bold);
   set_colour(canvas, colour, 1);
