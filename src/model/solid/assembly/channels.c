@@ -77,17 +77,16 @@ dea_status dea_solid_element_capacitance(struct dea_solid *s, size_t e, const do
                                          double *capacitance_F)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
-  dea_solid_element_input(s, e, u, s->state.voltage_V, &place, &in);
-  double step = field_step_V_per_m * in.part_material->thickness_m, square = in.voltage_V;
+  struct dea_solid_element_input at;
+  dea_solid_element_input(s, e, u, s->state.voltage_V, &at);
+  double step = field_step_V_per_m * at.part_material.thickness_m, square = at.in.voltage_V;
   square *= square;
   const double squares[2] = {fmax(square - step * step, 0), square + step * step};
   double energy[2] = {0, 0};
   dea_status status = DEA_OK;
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
-    in.voltage_V = sqrt(squares[i]);
-    status = element->type->evaluate(element, &in, DEA_ENERGY, s->work.element);
+    at.in.voltage_V = sqrt(squares[i]);
+    status = element->type->evaluate(element, &at.in, DEA_ENERGY, s->work.element);
     energy[i] = s->work.element->energy_J;
   }
   *capacitance_F = 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]);

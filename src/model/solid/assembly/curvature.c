@@ -89,12 +89,11 @@ static dea_status add_elements(struct dea_solid *s, double stiff, struct capacit
   for (size_t k = 0; k < p->own_count; k++) {
     const size_t e = p->own[k];
     const struct dea_element *element = dea_solid_element(s, e);
-    struct dea_solid_element_place place;
-    struct dea_element_input in;
-    dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-    dea_status status = element->type->evaluate(element, &in, DEA_TANGENT, s->work.element);
+    struct dea_solid_element_input at;
+    dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &at);
+    dea_status status = element->type->evaluate(element, &at.in, DEA_TANGENT, s->work.element);
     if (status == DEA_OK && element->type->constraint != NULL) {
-      status = element->type->constraint(element, &in, capacity->b, capacity->L);
+      status = element->type->constraint(element, &at.in, capacity->b, capacity->L);
     }
     DEA_TRY_STATUS(status);
     for (size_t i = 0; i < count; i++) {
@@ -180,11 +179,11 @@ static dea_status add_motion(struct dea_solid *s, size_t e, const double *v, con
 {
   const struct dea_solid_problem *p = &s->problem;
   const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
-  double moving[DEA_HEX_DOFS_MAX], potential[DEA_HEX_NODES_MAX], element_stiffness, moved;
+  struct dea_solid_element_input at;
+  double moving[DEA_HEX_DOFS_MAX], potential[DEA_HEX_NODES_MAX], element_stiffness = 0,
+         moved = 0;
   const int *nodes;
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &at);
   dea_solid_gather(s, e, v, moving);
   const int count = dea_solid_nodes(s, e, &nodes);
   for (int n = 0; n < count && element->type->per_node > 3; n++) {
@@ -192,19 +191,15 @@ static dea_status add_motion(struct dea_solid *s, size_t e, const double *v, con
   }
   const struct dea_element_motion motion = {
       .v = moving, .potential = potential, .pressure = q + e * (size_t)p->elements.pressures};
-  place.part_material.kappa_Pa *= DEA_SOLID_STIFF;
-  dea_status status = element->type->motion(element, &in, &motion, &element_stiffness, &moved);
+  at.part_material.kappa_Pa *= DEA_SOLID_STIFF;
+  dea_status status = element->type->motion(element, &at.in, &motion, &element_stiffness, &moved);
   if (status == DEA_OK && p->body_count > 0) {
-    place.part_material.kappa_Pa = 0;
-    status = element->type->evaluate(element, &in, DEA_FORCE, s->work.element);
-  }
-  if (status == DEA_OK) {
-    *stiffness += element_stiffness;
-    *mass += moved;
-  }
-  if (status == DEA_OK && p->body_count > 0) {
+    at.part_material.kappa_Pa = 0;
+    status = element->type->evaluate(element, &at.in, DEA_FORCE, s->work.element);
     add_forces(s, count, nodes, element->type->per_node, s->work.element->g);
   }
+  *stiffness += element_stiffness;
+  *mass += moved;
   return status;
 }
 

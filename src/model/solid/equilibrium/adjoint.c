@@ -1,7 +1,7 @@
 #include "model/solid/equilibrium/adjoint.h"
 
 #include "model/solid/assembly/assemble.h"
-#include "model/solid/assembly/elements.h"
+#include "model/solid/assembly/constraints.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
@@ -51,7 +51,7 @@ struct dea_adjoint {
   size_t all;                    // multipliers, those of loads behind the others
   bool touches;                  // one of these is held
   struct row *row;               // [all - pressures]
-  double *b, *L;                 // of each own element, see dea_element_type.constraint
+  struct dea_constraints constraints; // of elements
   double *lambda;                // [count][dofs]
   double *nu;                    // [count][all]
   /* of each answer, [count] times; right and conjugate of those that are not there yet: in turn */
@@ -64,30 +64,6 @@ struct dea_adjoint {
   double *theta;                 // [all] L^T theta of the last assembly, of loads C / L
   double stiff;                  // kappa of the factor over that of the solid
 };
-
-static size_t most_of(const struct dea_adjoint *a)
-{
-  return (size_t)a->s->problem.elements.pressures;
-}
-
-static dea_status find_constraints(struct dea_context *ctx, struct dea_adjoint *a)
-{
-  const struct dea_solid_problem *p = &a->s->problem;
-  size_t most = most_of(a);
-  dea_status status = DEA_OK;
-  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
-    size_t e = p->own[k];
-    const struct dea_element *element = dea_solid_element(a->s, e);
-    struct dea_solid_element_place place;
-    struct dea_element_input in;
-    if (element->type->constraint != NULL) {
-      dea_solid_element_input(a->s, e, a->s->state.u, a->s->state.voltage_V, &place, &in);
-      status = element->type->constraint(element, &in, a->b + k * most * DEA_HEX_DOFS_MAX,
-                                         a->L + k * most * most);
-    }
-  }
-  return dea_solid_allreduce(ctx, status);
-}
 
 /* Rows of the constraints of loads. */
 static void find_rows(struct dea_adjoint *a)
@@ -126,13 +102,10 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
 {
   struct dea_solid *s = a->s;
   struct dea_solid_report report = {0};
-  size_t own = s->problem.own_count, most = most_of(a);
   a->dofs = s->problem.dofs;
   a->pressures = dea_solid_pressure_count(s);
   a->all = a->pressures + multipliers_of_loads(s);
   a->row = dea_arena_alloc(&a->memory, a->all - a->pressures, sizeof *a->row);
-  a->b = dea_arena_alloc(&a->memory, own * most * DEA_HEX_DOFS_MAX, sizeof(double));
-  a->L = dea_arena_alloc(&a->memory, own * most * most, sizeof(double));
   a->lambda = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
   a->nu = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
   a->right = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
@@ -155,7 +128,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
     DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
   }
   a->stiff = s->found.factor_fits ? 1 : DEA_SOLID_STIFF;
-  return DEA_CHAIN(ctx, find_constraints(ctx, a));
+  return DEA_CHAIN(ctx, dea_constraints_find(ctx, &a->memory, s, &a->constraints));
 }
 
 dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,
@@ -179,24 +152,9 @@ void dea_adjoint_destroy(struct dea_context *ctx, struct dea_adjoint *a)
 }
 
 /* out [dofs] = b^T nu. */
-static void push(struct dea_adjoint *a, const double *nu, double *out)
+static void push(const struct dea_adjoint *a, const double *nu, double *out)
 {
-  struct dea_solid *s = a->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = most_of(a);
-  memset(out, 0, a->dofs * sizeof *out);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const double *b = a->b + k * most * DEA_HEX_DOFS_MAX;
-    const int *nodes;
-    size_t dofs = 3 * (size_t)dea_solid_nodes(s, e, &nodes);
-    for (size_t m = 0; m < count; m++, b += dofs) {
-      for (size_t i = 0; i < dofs; i++) {
-        out[3 * (size_t)nodes[i / 3] + i % 3] += nu[e * most + m] * b[i];
-      }
-    }
-  }
-  dea_solid_sum(out, a->dofs);
+  dea_constraints_push(&a->constraints, nu, out);
   for (size_t i = a->pressures; i < a->all; i++) {
     const struct row *row = &a->row[i - a->pressures];
     for (int j = 0; j < 3 * row->count; j++) {
@@ -208,21 +166,7 @@ static void push(struct dea_adjoint *a, const double *nu, double *out)
 /* out [all] = b v. */
 static void squeeze(const struct dea_adjoint *a, const double *v, double *out)
 {
-  struct dea_solid *s = a->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = most_of(a);
-  double own[DEA_HEX_DOFS_MAX];
-  memset(out, 0, a->all * sizeof *out);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const double *b = a->b + k * most * DEA_HEX_DOFS_MAX;
-    size_t dofs = 3 * (size_t)dea_solid_gather(s, e, v, own);
-    for (size_t m = 0; m < count; m++) {
-      for (size_t i = 0; i < dofs; i++) {
-        out[e * most + m] += b[m * dofs + i] * own[i];
-      }
-    }
-  }
+  dea_constraints_grow(&a->constraints, v, out);
   dea_solid_sum(out, a->pressures);
   for (size_t i = a->pressures; i < a->all; i++) {
     out[i] = row_times(&a->row[i - a->pressures], v);
@@ -231,7 +175,7 @@ static void squeeze(const struct dea_adjoint *a, const double *v, double *out)
 
 static double kappa_of(const struct dea_adjoint *a, size_t i)
 {
-  return i < a->pressures ? a->stiff * dea_solid_bulk_modulus(a->s, i / most_of(a))
+  return i < a->pressures ? a->stiff * dea_solid_bulk_modulus(a->s, i / a->constraints.most)
                           : a->row[i - a->pressures].stiffness;
 }
 
@@ -267,22 +211,14 @@ static double size_of(const struct dea_adjoint *a, size_t number, double change[
 /* left -= L^-1 Q_p. */
 static void get_pressures(struct dea_adjoint *a, size_t number)
 {
-  const struct dea_solid_problem *p = &a->s->problem;
   const double *pull = a->pull + number * a->all;
-  size_t most = most_of(a);
   double *sum = a->gain, *left = a->left + number * a->all;
   memset(sum, 0, a->pressures * sizeof *sum);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
-    const double *L = a->L + k * most * most;
-    for (size_t m = 0; m < count && L[0] > 0; m++) {
-      sum[e * most + m] = pull[e * most + m];
-      for (size_t c = 0; c < m; c++) {
-        sum[e * most + m] -= L[m * count + c] * sum[e * most + c];
-      }
-      sum[e * most + m] /= L[m * count + m];
-    }
+  for (size_t k = 0; k < a->s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&a->constraints, k);
+    memcpy(sum + at.first, pull + at.first, at.count * sizeof *sum);
   }
+  dea_constraints_solve(&a->constraints, false, sum);
   dea_solid_sum(sum, a->pressures);
   for (size_t i = 0; i < a->pressures; i++) {
     left[i] -= sum[i];
@@ -449,20 +385,17 @@ dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, 
                                 double *energy_J)
 {
   struct dea_solid *s = a->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = most_of(a);
   dea_solid_hold_potential(s, voltage_V, s->state.u);
   dea_solid_drop_bulk_modulus(s);
   dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, energy_J);
   dea_solid_restore_dropped_bulk_modulus(s);
   DEA_TRY(ctx, status);
   memset(a->theta, 0, a->all * sizeof *a->theta);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const double *L = a->L + k * most * most;
-    for (size_t m = 0; m < count; m++) {
-      for (size_t c = m; c < count; c++) { // L^T theta
-        a->theta[e * most + m] += L[c * count + m] * s->state.theta[e * most + c];
+  for (size_t k = 0; k < s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&a->constraints, k);
+    for (size_t m = 0; m < at.count; m++) {
+      for (size_t c = m; c < at.count; c++) { // L^T theta
+        a->theta[at.first + m] += at.L[c * at.count + m] * s->state.theta[at.first + c];
       }
     }
   }
@@ -490,14 +423,11 @@ size_t dea_adjoint_multipliers(const struct dea_adjoint *a)
 
 void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, double *out)
 {
-  const struct dea_solid_problem *p = &a->s->problem;
-  size_t most = most_of(a);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
-    const double *L = a->L + k * most * most;
-    for (size_t m = 0; m < count; m++) {
+  for (size_t k = 0; k < a->s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&a->constraints, k);
+    for (size_t m = 0; m < at.count; m++) {
       for (size_t c = 0; c <= m; c++) {
-        out[e * most + m] += times * L[m * count + c] * a->theta[e * most + c];
+        out[at.first + m] += times * at.L[m * at.count + c] * a->theta[at.first + c];
       }
     }
   }
@@ -508,27 +438,10 @@ void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, doub
 
 void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, double *out)
 {
-  const struct dea_solid_problem *p = &a->s->problem;
-  size_t most = most_of(a);
-  double own[DEA_HEX_DOFS_MAX];
-  memset(out, 0, a->all * sizeof *out);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
-    const double *b = a->b + k * most * DEA_HEX_DOFS_MAX, *L = a->L + k * most * most;
-    const double kappa_Pa = DEA_SOLID_STIFF * dea_solid_bulk_modulus(a->s, e);
-    size_t dofs = 3 * (size_t)dea_solid_gather(a->s, e, v, own);
-    for (size_t m = count; m-- > 0 && L[0] > 0;) { // L^T out = kappa b v
-      double sum = 0;
-      for (size_t i = 0; i < dofs; i++) {
-        // dea_solid_gather has set it
-        // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
-        sum += kappa_Pa * b[m * dofs + i] * own[i];
-      }
-      for (size_t c = m + 1; c < count; c++) {
-        sum -= L[c * count + m] * out[e * most + c];
-      }
-      out[e * most + m] = sum / L[m * count + m];
-    }
+  dea_constraints_grow(&a->constraints, v, out);
+  dea_constraints_solve(&a->constraints, true, out); // L^T out = kappa b v
+  for (size_t i = 0; i < a->pressures; i++) {
+    out[i] *= DEA_SOLID_STIFF * dea_solid_bulk_modulus(a->s, i / a->constraints.most);
   }
   dea_solid_sum(out, a->pressures);
   for (size_t i = a->pressures; i < a->all; i++) {

@@ -353,14 +353,13 @@ static bool wrinkles(const struct dea_solid *s, size_t e)
   static const double none = 1e-12; // of the modulus
   const struct dea_element *element = dea_solid_element(s, e);
   const struct dea_part_material *film = dea_solid_part_material(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
+  struct dea_solid_element_input at;
   struct dea_membrane_state state;
   if (!film->relaxed) {
     return false;
   }
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  bool any = element->type->membrane_state(element, &in, &state) != DEA_OK;
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &at);
+  bool any = element->type->membrane_state(element, &at.in, &state) != DEA_OK;
   for (int p = 0; !any && p < state.count; p++) {
     any = state.tension[p] <= none * dea_part_material_modulus(film) * film->thickness_m;
   }

@@ -231,12 +231,11 @@ static dea_status predict_element(struct dea_solid *s, size_t k, double voltage_
   const struct dea_solid_problem *p = &s->problem;
   size_t e = p->own[k], pressures = (size_t)p->elements.pressures;
   const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
+  struct dea_solid_element_input at;
   double element_step[DEA_HEX_DOFS_MAX], *out = s->work.predicted + k * p->elements.predicted_count;
-  dea_solid_element_input(s, e, s->state.u, voltage_V, &place, &in);
+  dea_solid_element_input(s, e, s->state.u, voltage_V, &at);
   dea_solid_gather(s, e, step, element_step);
-  dea_status status = element->type->predict(element, &in, element_step, fraction, stresses, out);
+  dea_status status = element->type->predict(element, &at.in, element_step, fraction, stresses, out);
   memcpy(s->state.theta + e * pressures, out, (size_t)element->pressures * sizeof *out);
   return status;
 }

@@ -552,7 +552,7 @@ static void swap_arrays(double **a, double **b)
 void dea_solid_time_accept(struct dea_solid_time *t)
 {
   if (t->variables != NULL) {
-    dea_internal_variables_accept(t->variables, t->solid);
+    dea_internal_variables_accept(t->variables);
   }
   swap_arrays(&t->F, &t->F_next);
   swap_arrays(&t->v, &t->v_next);
