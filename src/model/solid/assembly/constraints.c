@@ -1,6 +1,7 @@
 #include "model/solid/assembly/constraints.h"
 
 #include "model/solid/assembly/elements.h"
+#include "model/solid/assembly/incompressible.h"
 
 #include <string.h>
 
@@ -82,4 +83,15 @@ void dea_constraints_solve(const struct dea_constraints *c, bool transposed, dou
       y[m] = at.L[0] > 0 ? y[m] / at.L[m * at.count + m] : 0;
     }
   }
+}
+
+void dea_constraints_pressures(const struct dea_constraints *c, const double *v, double *out)
+{
+  const size_t count = dea_solid_pressure_count(c->s);
+  dea_constraints_grow(c, v, out);
+  dea_constraints_solve(c, true, out); // L^T out = kappa b v
+  for (size_t i = 0; i < count; i++) {
+    out[i] *= DEA_SOLID_STIFF * dea_solid_bulk_modulus(c->s, i / c->most);
+  }
+  dea_solid_sum(out, count);
 }

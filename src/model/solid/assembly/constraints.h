@@ -26,5 +26,8 @@ struct dea_element_constraint dea_constraints_at(const struct dea_constraints *c
 void dea_constraints_push(const struct dea_constraints *c, const double *nu, double *out);
 /* out [pressures] = b v, v [dofs]. */
 void dea_constraints_grow(const struct dea_constraints *c, const double *v, double *out);
+/* Pressures with which the solid as good as incompressible answers a motion v [dofs]: out
+ * [pressures] = kappa M^-1 B^T v, of all ranks. */
+void dea_constraints_pressures(const struct dea_constraints *c, const double *v, double *out);
 /* x [pressures] = L^-1 x, or L^-T x; 0 of what takes no pressure. */
 void dea_constraints_solve(const struct dea_constraints *c, bool transposed, double *x);

@@ -24,16 +24,6 @@ static size_t control_count(const struct dea_solid *s)
   return count + (s->state.drop_V != NULL ? p->grid->element_count : 0);
 }
 
-static size_t state_count(const struct dea_solid *s)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  size_t count = p->dofs + dea_solid_pressure_count(s);
-  for (size_t i = 0; i < p->load_count; i++) {
-    count += p->loads[i].multiplier_count;
-  }
-  return count;
-}
-
 void dea_load_steps_release(struct dea_load_steps *path)
 {
   dea_arena_free(&path->memory);
@@ -43,7 +33,7 @@ void dea_load_steps_release(struct dea_load_steps *path)
 dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
 {
   struct dea_load_steps *path = &s->work.load_steps;
-  size_t states = state_count(s), controls = control_count(s);
+  size_t states = s->problem.dofs + dea_solid_multiplier_count(s), controls = control_count(s);
   if (path->state_count == states && path->control_count == controls) {
     return DEA_OK;
   }

@@ -3,8 +3,8 @@
  *
  * Mesh, displacements and forces are on every rank; elements, pieces of loads and rows of K are
  * split. What a decision hangs on is summed on one rank and sent to the others, so that all see the
- * same bits and go the same way. All functions but dea_solid_rank, dea_solid_share and
- * dea_solid_petsc are calls that all ranks make. */
+ * same bits and go the same way. All functions but dea_solid_rank, dea_solid_ranks,
+ * dea_solid_share and dea_solid_petsc are calls that all ranks make. */
 #pragma once
 
 #include "base/context.h"
@@ -15,8 +15,9 @@ void dea_solid_stop(void);
 /* "PETSc 3.18.5, SLEPc 3.18.2, MUMPS 5.5.1": those that are loaded, of MUMPS what PETSc's headers
  * say. */
 dea_status dea_solid_libraries(struct dea_context *ctx, char *out, size_t size);
-/* Number of this process among those that mpirun started, from 0. */
+/* Number of this process among those that mpirun started, from 0; and how many these are. */
 int dea_solid_rank(void);
+int dea_solid_ranks(void);
 /* Whether it is so on any rank. */
 bool dea_solid_allreduce_any(bool here);
 /* Zeroed memory as of dea_alloc on all ranks, or NULL on all of them. */

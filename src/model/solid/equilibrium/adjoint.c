@@ -47,20 +47,19 @@ enum { OF_ELEMENTS, OF_LOADS, KINDS };
 struct dea_adjoint {
   struct dea_arena memory; // of the arrays
   struct dea_solid *s;
-  size_t dofs, pressures, count; // of u, of multipliers of elements, of answers
-  size_t all;                    // multipliers, those of loads behind the others
-  bool touches;                  // one of these is held
-  struct row *row;               // [all - pressures]
+  size_t dofs, pressures, count;      // of u, of multipliers of elements, of answers
+  size_t all;                         // multipliers, those of loads behind the others
+  bool touches;                       // one of these is held
+  struct row *row;                    // [all - pressures]
   struct dea_constraints constraints; // of elements
-  double *lambda;                // [count][dofs]
-  double *nu;                    // [count][all]
-  /* of each answer, [count] times; right and conjugate of those that are not there yet: in turn */
-  double *right, *conjugate;     // [dofs] of the slopes at first, conjugate: K^-1 b^T towards
-  double *pull;                  // [all] Q_p
-  double *left, *towards, *gain; // [all] of b lambda, direction of a step, b conjugate
-  double *before;                // size of the last left
-  double (*largest)[KINDS];      // largest nu
-  size_t *open;                  // numbers of those that are not there yet
+  double *right;                      // [count][dofs] Q_u; while it is solved for any
+  double *pull;                       // [count][all] Q_p
+  double *lambda;                     // [count][dofs]
+  double *nu;                         // [count][all]
+  /* Of the answer that is solved for: what b lambda leaves, the direction of a step, work; K^-1 b^T
+   * times the direction. */
+  double *left, *towards, *gain; // [all]
+  double *conjugate;             // [dofs]
   double *theta;                 // [all] L^T theta of the last assembly, of loads C / L
   double stiff;                  // kappa of the factor over that of the solid
 };
@@ -89,35 +88,24 @@ static void find_rows(struct dea_adjoint *a)
   }
 }
 
-static size_t multipliers_of_loads(const struct dea_solid *s)
-{
-  size_t count = 0;
-  for (size_t k = 0; k < s->problem.load_count; k++) {
-    count += s->problem.loads[k].multiplier_count;
-  }
-  return count;
-}
-
 static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
 {
   struct dea_solid *s = a->s;
   struct dea_solid_report report = {0};
   a->dofs = s->problem.dofs;
   a->pressures = dea_solid_pressure_count(s);
-  a->all = a->pressures + multipliers_of_loads(s);
+  a->all = dea_solid_multiplier_count(s);
   a->row = dea_arena_alloc(&a->memory, a->all - a->pressures, sizeof *a->row);
-  a->lambda = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  a->nu = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
-  a->right = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  a->conjugate = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  double **const each[] = {&a->pull, &a->left, &a->towards, &a->gain};
-  for (size_t i = 0; i < sizeof each / sizeof each[0]; i++) {
-    *each[i] = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
+  double **const moves[] = {&a->right, &a->lambda}, **const pressures[] = {&a->pull, &a->nu};
+  double **const work[] = {&a->left, &a->towards, &a->gain, &a->theta};
+  for (size_t i = 0; i < 2; i++) {
+    *moves[i] = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
+    *pressures[i] = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
   }
-  a->theta = dea_arena_alloc(&a->memory, a->all, sizeof(double));
-  a->before = dea_arena_alloc(&a->memory, a->count, sizeof(double));
-  a->largest = dea_arena_alloc(&a->memory, a->count, sizeof *a->largest);
-  a->open = dea_arena_alloc(&a->memory, a->count, sizeof *a->open);
+  for (size_t i = 0; i < sizeof work / sizeof *work; i++) {
+    *work[i] = dea_arena_alloc(&a->memory, a->all, sizeof(double));
+  }
+  a->conjugate = dea_arena_alloc(&a->memory, a->dofs, sizeof(double));
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&a->memory)));
   find_rows(a);
   // of the state before the last step, which was a 1e-8 of the way, or of this one; other points
@@ -184,35 +172,18 @@ static int kind_of(const struct dea_adjoint *a, size_t i)
   return i < a->pressures ? OF_ELEMENTS : OF_LOADS;
 }
 
-/* out [count][dofs] = K^-1 right, without what is held. */
-static dea_status solve(struct dea_context *ctx, struct dea_adjoint *a, size_t count, double *out)
+/* out [dofs] = K^-1 right, without what is held. */
+static dea_status solve(struct dea_context *ctx, struct dea_adjoint *a, double *right, double *out)
 {
-  for (size_t k = 0; k < count; k++) {
-    dea_solid_release_held(a->s, a->right + k * a->dofs);
-  }
-  return DEA_CHAIN(ctx, dea_solid_solve_many(ctx, a->s, count, a->right, out));
-}
-
-/* left . kappa left, what is left of the second equation of an answer; change: the largest kappa
- * left. */
-static double size_of(const struct dea_adjoint *a, size_t number, double change[KINDS])
-{
-  const double *left = a->left + number * a->all;
-  double sum = 0;
-  change[OF_ELEMENTS] = change[OF_LOADS] = 0;
-  for (size_t i = 0; i < a->all; i++) {
-    double z = kappa_of(a, i) * left[i], *most = &change[kind_of(a, i)];
-    sum += left[i] * z;
-    *most = fmax(*most, fabs(z));
-  }
-  return sum;
+  dea_solid_release_held(a->s, right);
+  return DEA_CHAIN(ctx, dea_solid_solve_linear(ctx, a->s, right, out));
 }
 
 /* left -= L^-1 Q_p. */
 static void get_pressures(struct dea_adjoint *a, size_t number)
 {
   const double *pull = a->pull + number * a->all;
-  double *sum = a->gain, *left = a->left + number * a->all;
+  double *sum = a->gain;
   memset(sum, 0, a->pressures * sizeof *sum);
   for (size_t k = 0; k < a->s->problem.own_count; k++) {
     const struct dea_element_constraint at = dea_constraints_at(&a->constraints, k);
@@ -221,87 +192,83 @@ static void get_pressures(struct dea_adjoint *a, size_t number)
   dea_constraints_solve(&a->constraints, false, sum);
   dea_solid_sum(sum, a->pressures);
   for (size_t i = 0; i < a->pressures; i++) {
-    left[i] -= sum[i];
+    a->left[i] -= sum[i];
   }
   for (size_t i = a->pressures; i < a->all; i++) {
     const double root = a->row[i - a->pressures].root;
-    left[i] -= root > 0 ? pull[i] / root : 0;
+    a->left[i] -= root > 0 ? pull[i] / root : 0;
   }
 }
 
-/* The first lambda of all that is wanted, with what it leaves. */
-static dea_status begin(struct dea_context *ctx, struct dea_adjoint *a, size_t count)
+/* left . kappa left, what is left of the second equation; change: the largest kappa left. */
+static double size_of(const struct dea_adjoint *a, double change[KINDS])
 {
-  for (size_t k = 0; k < count; k++) {
-    memmove(a->right + k * a->dofs, dea_adjoint_slope(a, a->open[k]), a->dofs * sizeof(double));
+  double sum = 0;
+  change[OF_ELEMENTS] = change[OF_LOADS] = 0;
+  for (size_t i = 0; i < a->all; i++) {
+    double z = kappa_of(a, i) * a->left[i], *most = &change[kind_of(a, i)];
+    sum += a->left[i] * z;
+    *most = fmax(*most, fabs(z));
   }
-  DEA_TRY(ctx, solve(ctx, a, count, a->conjugate));
-  for (size_t k = 0; k < count; k++) {
-    const size_t n = a->open[k];
-    memset(a->nu + n * a->all, 0, a->all * sizeof(double));
-    a->before[n] = a->largest[n][OF_ELEMENTS] = a->largest[n][OF_LOADS] = 0;
-    memcpy(a->lambda + n * a->dofs, a->conjugate + k * a->dofs, a->dofs * sizeof(double));
-    squeeze(a, a->lambda + n * a->dofs, a->left + n * a->all);
-    get_pressures(a, n);
+  return sum;
+}
+
+/* One step of conjugate gradients along the direction, where left has that size. largest: of nu. */
+static void step(struct dea_adjoint *a, double size, double *lambda, double *nu,
+                 double largest[KINDS])
+{
+  double product = 0;
+  squeeze(a, a->conjugate, a->gain);
+  for (size_t i = 0; i < a->all; i++) {
+    product += a->towards[i] * a->gain[i];
   }
-  return DEA_OK;
+  const double length = product != 0 ? size / product : 0;
+  for (size_t i = 0; i < a->all; i++) {
+    double *most = &largest[kind_of(a, i)];
+    nu[i] += length * a->towards[i];
+    a->left[i] -= length * a->gain[i];
+    *most = fmax(*most, fabs(nu[i]));
+  }
+  for (size_t i = 0; i < a->dofs; i++) {
+    lambda[i] -= length * a->conjugate[i];
+  }
 }
 
 /* A takes its share of nu from K. */
-static void end(struct dea_adjoint *a, size_t number)
+static void end(struct dea_adjoint *a, const double *lambda, double *nu)
 {
-  double *nu = a->nu + number * a->all, *gain = a->gain;
-  squeeze(a, a->lambda + number * a->dofs, gain);
+  squeeze(a, lambda, a->gain);
   for (size_t i = 0; i < a->all; i++) {
-    nu[i] += kappa_of(a, i) * gain[i];
+    nu[i] += kappa_of(a, i) * a->gain[i];
   }
 }
 
-/* The next directions; returns how many answers are not there yet. */
-static size_t aim(struct dea_adjoint *a, size_t count)
+static dea_status solve_one(struct dea_context *ctx, struct dea_adjoint *a, size_t number)
 {
-  size_t open = 0;
-  for (size_t k = 0; k < count; k++) {
-    const size_t n = a->open[k];
-    double *towards = a->towards + n * a->all, change[KINDS];
-    const double *left = a->left + n * a->all, *largest = a->largest[n];
-    const double size = size_of(a, n, change);
+  double *right = dea_adjoint_slope(a, number), *lambda = a->lambda + number * a->dofs;
+  double *nu = a->nu + number * a->all, before = 0, largest[KINDS] = {0};
+  DEA_TRY(ctx, solve(ctx, a, right, lambda));
+  memset(nu, 0, a->all * sizeof *nu);
+  squeeze(a, lambda, a->left);
+  get_pressures(a, number);
+  for (int k = 0; k < STEPS; k++) {
+    double change[KINDS];
+    const double size = size_of(a, change);
     if (!(change[OF_ELEMENTS] > settled * largest[OF_ELEMENTS]) &&
         !(change[OF_LOADS] > settled * largest[OF_LOADS])) {
-      end(a, n);
-      continue;
+      end(a, lambda, nu);
+      return DEA_OK;
     }
     for (size_t i = 0; i < a->all; i++) {
-      towards[i] =
-          kappa_of(a, i) * left[i] + (a->before[n] != 0 ? size / a->before[n] : 0) * towards[i];
+      a->towards[i] =
+          kappa_of(a, i) * a->left[i] + (before != 0 ? size / before : 0) * a->towards[i];
     }
-    a->before[n] = size;
-    push(a, towards, a->right + open * a->dofs);
-    a->open[open++] = n;
+    before = size;
+    push(a, a->towards, right);
+    DEA_TRY(ctx, solve(ctx, a, right, a->conjugate));
+    step(a, size, lambda, nu, largest);
   }
-  return open;
-}
-
-/* One step of conjugate gradients of an answer along its direction; conjugate is its K^-1 b^T. */
-static void step(struct dea_adjoint *a, size_t number, const double *conjugate)
-{
-  double *towards = a->towards + number * a->all, *left = a->left + number * a->all,
-         *nu = a->nu + number * a->all, *lambda = a->lambda + number * a->dofs;
-  double product = 0;
-  squeeze(a, conjugate, a->gain);
-  for (size_t i = 0; i < a->all; i++) {
-    product += towards[i] * a->gain[i];
-  }
-  const double length = product != 0 ? a->before[number] / product : 0;
-  for (size_t i = 0; i < a->all; i++) {
-    double *largest = &a->largest[number][kind_of(a, i)];
-    nu[i] += length * towards[i];
-    left[i] -= length * a->gain[i];
-    *largest = fmax(*largest, fabs(nu[i]));
-  }
-  for (size_t i = 0; i < a->dofs; i++) {
-    lambda[i] -= length * conjugate[i];
-  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the pressures of a gradient do not settle");
 }
 
 double *dea_adjoint_slope(struct dea_adjoint *a, size_t number)
@@ -321,34 +288,20 @@ const double *dea_adjoint_answer(const struct dea_adjoint *a, size_t number)
 
 dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, const bool *wanted)
 {
-  size_t open = 0;
   for (size_t n = 0; n < a->count; n++) {
-    if (wanted[n]) {
-      a->open[open++] = n;
-    }
+    DEA_TRY(ctx, wanted[n] ? solve_one(ctx, a, n) : DEA_OK);
   }
-  DEA_TRY(ctx, begin(ctx, a, open));
-  for (int i = 0; i < STEPS && open > 0; i++) {
-    open = aim(a, open);
-    DEA_TRY(ctx, solve(ctx, a, open, a->conjugate));
-    for (size_t k = 0; k < open; k++) {
-      step(a, a->open[k], a->conjugate + k * a->dofs);
-    }
-  }
-  return open == 0
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the pressures of a gradient do not settle");
+  return DEA_OK;
 }
 
 double dea_adjoint_pair(struct dea_adjoint *a, size_t answer, size_t number)
 {
-  double *left = a->left + number * a->all; // 0 less L^-1 Q_p
   const double *nu = a->nu + answer * a->all;
   double sum = dea_solid_dot(a->s, dea_adjoint_answer(a, answer), dea_adjoint_slope(a, number));
-  memset(left, 0, a->all * sizeof *left);
+  memset(a->left, 0, a->all * sizeof *a->left); // less L^-1 Q_p
   get_pressures(a, number);
   for (size_t i = 0; i < a->all; i++) {
-    sum -= nu[i] * left[i];
+    sum -= nu[i] * a->left[i];
   }
   return sum;
 }
@@ -386,10 +339,7 @@ dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, 
 {
   struct dea_solid *s = a->s;
   dea_solid_hold_potential(s, voltage_V, s->state.u);
-  dea_solid_drop_bulk_modulus(s);
-  dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, energy_J);
-  dea_solid_restore_dropped_bulk_modulus(s);
-  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, dea_solid_assemble_forces(ctx, s, voltage_V, energy_J));
   memset(a->theta, 0, a->all * sizeof *a->theta);
   for (size_t k = 0; k < s->problem.own_count; k++) {
     const struct dea_element_constraint at = dea_constraints_at(&a->constraints, k);
@@ -416,11 +366,6 @@ double dea_adjoint_product(const struct dea_adjoint *a, size_t number)
 
 // Modes ------------------------------------------------------------------------------------------
 
-size_t dea_adjoint_multipliers(const struct dea_adjoint *a)
-{
-  return a->all;
-}
-
 void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, double *out)
 {
   for (size_t k = 0; k < a->s->problem.own_count; k++) {
@@ -438,12 +383,7 @@ void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, doub
 
 void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, double *out)
 {
-  dea_constraints_grow(&a->constraints, v, out);
-  dea_constraints_solve(&a->constraints, true, out); // L^T out = kappa b v
-  for (size_t i = 0; i < a->pressures; i++) {
-    out[i] *= DEA_SOLID_STIFF * dea_solid_bulk_modulus(a->s, i / a->constraints.most);
-  }
-  dea_solid_sum(out, a->pressures);
+  dea_constraints_pressures(&a->constraints, v, out);
   for (size_t i = a->pressures; i < a->all; i++) {
     const struct row *row = &a->row[i - a->pressures];
     out[i] = row->root > 0 ? row->stiffness / row->root * row_times(row, v) : 0;

@@ -130,7 +130,7 @@ static dea_status count_below(struct dea_context *ctx, struct eigen *f, double v
 {
   struct dea_solid *s = f->solid;
   DEA_TRY(ctx, dea_solid_add_matrix(ctx, s->work.K, -value, f->B));
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, count));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, DEA_FACTOR_EXACT, count));
   return DEA_CHAIN(ctx, dea_solid_add_matrix(ctx, s->work.K, value, f->B));
 }
 
@@ -177,7 +177,8 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
     if (f->count == before) {
       break;
     }
-    DEA_TRY(ctx, !below ? dea_solid_factor_any(ctx, f->solid) : DEA_OK);
+    int negative;
+    DEA_TRY(ctx, !below ? dea_solid_factorise(ctx, f->solid, DEA_FACTOR_EXACT, &negative) : DEA_OK);
     wanted = below ? count - f->count : MAX_EXTRA + count / 2;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "only %d modes were found, and not all up to the %d-th",

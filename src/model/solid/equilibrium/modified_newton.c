@@ -38,26 +38,26 @@ struct follow {
   struct dea_arena memory; // of the arrays
   struct dea_solid *s;
   struct dea_solid_report *report;
-  size_t dofs, pressures, count; // of u, of q, of both
-  double *keep, *first;          // [states] state, [count] u and q at the start
+  size_t dofs, pressures, count;      // of u, of q, of both
+  double *keep, *first;               // [states] state, [count] u and q at the start
   struct dea_constraints constraints; // there
-  double *weight;                // [pressures] dq weight dq is an energy
-  double *theta, *nu;            // [pressures] of this iteration; work
-  double *x, *f, *h;             // [count], [count], [dofs] of this iteration; h = -K0 du
-  double *x_old, *f_old, *h_old; // of the one before
-  double *dx[DEPTH], *df[DEPTH]; // [count] differences between iterations, newest first
-  double *dh[DEPTH];             // [dofs]
-  double gram[DEPTH][DEPTH];     // products of df[i] and df[j] by K0
-  int depth;                     // of them that there are
-  double rate;                   // size of the second f over that of the first
-  double size_first, size;       // of f, at first and now
-  double size_renewed;           // when the loads were last brought up to date; or at first
-  int renewed;                   // iteration of that
-  double accuracy;               // of the last f over the first
-  double load_error;             // of the loads' multipliers, at most 1: they have followed
-  bool equilibrium;              // forces and theta are to be those of one
-  double from_V;                 // voltage at the start; NAN: not only that has changed
-  double stiff;                  // kappa of the factor over that of the solid
+  double *weight;                     // [pressures] dq weight dq is an energy
+  double *theta, *nu;                 // [pressures] of this iteration; work
+  double *x, *f, *h;                  // [count], [count], [dofs] of this iteration; h = -K0 du
+  double *x_old, *f_old, *h_old;      // of the one before
+  double *dx[DEPTH], *df[DEPTH];      // [count] differences between iterations, newest first
+  double *dh[DEPTH];                  // [dofs]
+  double gram[DEPTH][DEPTH];          // products of df[i] and df[j] by K0
+  int depth;                          // of them that there are
+  double rate;                        // size of the second f over that of the first
+  double size_first, size;            // of f, at first and now
+  double size_renewed;                // when the loads were last brought up to date; or at first
+  int renewed;                        // iteration of that
+  double accuracy;                    // of the last f over the first
+  double load_error;                  // of the loads' multipliers, at most 1: they have followed
+  bool equilibrium;                   // forces and theta are to be those of one
+  double from_V;                      // voltage at the start; NAN: not only that has changed
+  double stiff;                       // kappa of the factor over that of the solid
 };
 
 static dea_status allocate(struct follow *w)
@@ -292,15 +292,10 @@ static dea_status find_forces(struct dea_context *ctx, struct follow *w)
 {
   struct dea_solid *s = w->s;
   set(w, w->x);
-  dea_solid_drop_bulk_modulus(s);
-  dea_status status =
-      dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &w->report->energy_J);
-  dea_solid_restore_dropped_bulk_modulus(s);
-  if (status == DEA_OK) {
-    memcpy(w->h, s->work.g, w->dofs * sizeof *w->h);
-    memcpy(w->theta, s->state.theta, w->pressures * sizeof *w->theta);
-  }
-  return status;
+  DEA_TRY(ctx, dea_solid_assemble_forces(ctx, s, s->state.voltage_V, &w->report->energy_J));
+  memcpy(w->h, s->work.g, w->dofs * sizeof *w->h);
+  memcpy(w->theta, s->state.theta, w->pressures * sizeof *w->theta);
+  return DEA_OK;
 }
 
 /* f at x, where h is r and theta is known. */
@@ -440,12 +435,10 @@ static dea_status solve_last_step(struct dea_context *ctx, struct follow *w)
   }
   DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
   if (stiff) {
-    dea_solid_raise_bulk_modulus(s);
+    dea_solid_change_bulk_modulus(s, DEA_SOLID_STIFF);
   }
   dea_status status = dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, 1, false, true);
-  if (stiff) {
-    dea_solid_restore_bulk_modulus_at_pressure(s);
-  }
+  s->state.bulk_factor /= stiff ? DEA_SOLID_STIFF : 1; // multipliers are those of the step's end
   for (size_t i = 0; i < w->dofs && status == DEA_OK; i++) {
     s->state.u[i] += s->work.step[i];
   }

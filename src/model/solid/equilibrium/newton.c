@@ -99,7 +99,7 @@ static dea_status search_definite(struct dea_context *ctx, struct dea_solid *s, 
       DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->work.K, more_Pa));
     }
     *there = d->shift_Pa;
-    DEA_TRY(ctx, dea_solid_factor_roughly(ctx, s, most, &negative));
+    DEA_TRY(ctx, dea_solid_factorise(ctx, s, most, &negative));
     d->report->factorisations++;
     d->report->shifted += *there > 0;
     if (*there == 0) {
@@ -235,7 +235,8 @@ static dea_status predict_element(struct dea_solid *s, size_t k, double voltage_
   double element_step[DEA_HEX_DOFS_MAX], *out = s->work.predicted + k * p->elements.predicted_count;
   dea_solid_element_input(s, e, s->state.u, voltage_V, &at);
   dea_solid_gather(s, e, step, element_step);
-  dea_status status = element->type->predict(element, &at.in, element_step, fraction, stresses, out);
+  dea_status status =
+      element->type->predict(element, &at.in, element_step, fraction, stresses, out);
   memcpy(s->state.theta + e * pressures, out, (size_t)element->pressures * sizeof *out);
   return status;
 }
@@ -272,7 +273,7 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
 static void soften(struct dea_solid *s, struct newton *d, double softness)
 {
   d->unresolved = softness == d->softness ? d->unresolved : 0;
-  dea_solid_scale_bulk_modulus(s, softness / d->softness);
+  s->state.bulk_factor *= softness / d->softness;
   d->softness = softness;
 }
 
@@ -408,7 +409,7 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &report->energy_J));
   }
   dea_solid_keep_scales(s);
-  DEA_TRY(ctx, dea_solid_factor_roughly(ctx, s, 0, &report->unstable_modes));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, 0, &report->unstable_modes));
   report->factorisations++;
   s->found.factor_fits = report->unstable_modes == 0;
   if (!s->found.factor_fits) { // of a solid that kappa leaves a little compressible

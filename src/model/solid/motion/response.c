@@ -54,7 +54,8 @@ static dea_status purge(struct dea_context *ctx, const struct dea_solid *s,
 static dea_status find_rest(struct dea_context *ctx, struct dea_solid *s,
                             struct dea_solid_response *r, double *force)
 {
-  DEA_TRY(ctx, dea_solid_factor_any(ctx, s));
+  int negative;
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, DEA_FACTOR_EXACT, &negative));
   for (size_t k = 0; k < TERMS; k++) {
     double *term = r->rest + k * r->dofs;
     DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, force, s->work.trial));
