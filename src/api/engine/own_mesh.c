@@ -703,7 +703,7 @@ static dea_status find_charges(struct dea_context *ctx, struct dea_solid_object 
   double *all = dea_alloc(ctx, 2 * n + 2 * n * n, sizeof *all);
   DEA_TRY_MEMORY(all != NULL);
   dea_solid_channel_voltages(object->solid, all);
-  dea_status status = dea_solid_charges(ctx, object->solid, all + n);
+  dea_status status = dea_solid_flows(ctx, object->solid, NULL, all + n, NULL);
   if (status == DEA_OK) {
     status = dea_solid_capacitances(ctx, object->solid, true, all + 2 * n);
   }

@@ -161,16 +161,6 @@ static dea_status add_own(struct dea_solid *s, const struct sums *sums)
   return DEA_OK;
 }
 
-dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *s, double *charge_C)
-{
-  size_t count = s->problem.channel_count + 1;
-  memset(charge_C, 0, count * sizeof *charge_C);
-  DEA_TRY(ctx, refuse_coupled(ctx, s));
-  DEA_TRY(ctx, dea_solid_allreduce(ctx, add_own(s, &(struct sums){.charge_C = charge_C})));
-  dea_solid_sum(charge_C, count);
-  return DEA_OK;
-}
-
 dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *s, const double *per_s,
                                  double *conductance_S)
 {
@@ -188,11 +178,13 @@ dea_status dea_solid_flows(struct dea_context *ctx, struct dea_solid *s, const d
   size_t count = s->problem.channel_count + 1;
   const struct sums sums = {.charge_C = charge_C, .per_s = per_s, .leak_A = leak_A};
   memset(charge_C, 0, count * sizeof *charge_C);
-  memset(leak_A, 0, (count + 1) * sizeof *leak_A);
+  if (leak_A != NULL) {
+    memset(leak_A, 0, (count + 1) * sizeof *leak_A);
+  }
   DEA_TRY(ctx, refuse_coupled(ctx, s));
   DEA_TRY(ctx, dea_solid_allreduce(ctx, add_own(s, &sums)));
   dea_solid_sum(charge_C, count);
-  dea_solid_sum(leak_A, count + 1);
+  dea_solid_sum(leak_A, leak_A != NULL ? count + 1 : 0);
   return DEA_OK;
 }
 

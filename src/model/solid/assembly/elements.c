@@ -3,6 +3,8 @@
 #include "model/solid/assembly/internal_variables.h"
 #include "model/solid/assembly/potential.h"
 
+#include <stdint.h>
+
 static dea_status set_kind(struct dea_context *ctx, struct dea_solid *s, size_t e)
 {
   struct dea_solid_problem *p = &s->problem;
@@ -84,6 +86,19 @@ dea_status dea_solid_find_laminates(struct dea_context *ctx, struct dea_solid *s
   return DEA_OK;
 }
 
+/* What an element is of, with its kappa and the step of its branches. */
+static struct dea_part_material part_material_at(const struct dea_solid *s, size_t e)
+{
+  const struct dea_internal_variables *h = s->state.internal_variables;
+  struct dea_part_material part_material = *dea_solid_part_material(s, e);
+  part_material.kappa_Pa = dea_solid_bulk_modulus(s, e);
+  if (h != NULL && h->first[e] != SIZE_MAX) {
+    part_material.viscous = h->B[h->first[e]];
+    part_material.viscous_Pa = h->b_Pa[s->problem.part_material_of[e]];
+  }
+  return part_material;
+}
+
 void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *u, double voltage_V,
                              struct dea_solid_element_input *out)
 {
@@ -91,7 +106,7 @@ void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *
   const struct dea_element *element = dea_solid_element(s, e);
   const int *nodes;
   int count = dea_solid_nodes(s, e, &nodes);
-  out->part_material = dea_solid_part_material_at(s, e);
+  out->part_material = part_material_at(s, e);
   dea_solid_gather(s, e, p->grid->X, out->X);
   dea_solid_gather(s, e, u, out->u);
   for (int n = 0; n < count && element->type->per_node > 3; n++) {

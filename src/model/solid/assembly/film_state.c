@@ -10,12 +10,6 @@
 
 // Tension -----------------------------------------------------------------------------------------
 
-/* The smaller principal one of a force 11 22 12. */
-static double smaller_of(const double T[3])
-{
-  return 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
-}
-
 /* Height of an element [m]; of a surface what it is thick. */
 static double height_of(const struct dea_solid *s, size_t e)
 {
@@ -78,7 +72,8 @@ static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent ex
       for (int i = 0; i < 3; i++) {
         out->force[p][i] += other.force[p][i];
       }
-      out->tension[p] = smaller_of(out->force[p]);
+      const double *T = out->force[p]; // 11 22 12
+      out->tension[p] = 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
     }
   }
   return status;
@@ -205,8 +200,8 @@ static dea_status field_of(const struct dea_solid *s, size_t e,
   dea_status status = ply_of(s, e, V, &film);
   for (int p = 0; status == DEA_OK && p < film.count; p++) {
     const double margin = quantity_of(s, e, V, &film, data, DEA_FILM_MARGIN, p, NULL);
-    out->true_field_V_per_m = fmax(out->true_field_V_per_m,
-                                   quantity_of(s, e, V, &film, data, DEA_FILM_FIELD, p, NULL));
+    out->true_field_V_per_m =
+        fmax(out->true_field_V_per_m, quantity_of(s, e, V, &film, data, DEA_FILM_FIELD, p, NULL));
     out->area = fmax(out->area, film.area[p]);
     out->breakdown_margin = fmin(out->breakdown_margin, margin);
     out->breakdown_probability = fmax(

@@ -111,18 +111,6 @@ void dea_internal_variables_destroy(struct dea_context *ctx, struct dea_internal
 
 /* ---- steps ---- */
 
-struct dea_part_material dea_solid_part_material_at(const struct dea_solid *s, size_t e)
-{
-  const struct dea_internal_variables *h = s->state.internal_variables;
-  struct dea_part_material part_material = *dea_solid_part_material(s, e);
-  part_material.kappa_Pa = dea_solid_bulk_modulus(s, e);
-  if (h != NULL && h->first[e] != ELASTIC) {
-    part_material.viscous = h->B[h->first[e]];
-    part_material.viscous_Pa = h->b_Pa[s->problem.part_material_of[e]];
-  }
-  return part_material;
-}
-
 /* B of a point. */
 static void begin_point(struct dea_internal_variables *h, size_t at,
                         const struct dea_branches *branches, const struct dea_branch_step *steps)
@@ -159,8 +147,8 @@ dea_status dea_internal_variables_energy(struct dea_internal_variables *h,
   *energy_J = 0;
   DEA_TRY_STATUS(measure(s, h));
   for (size_t at = 0; at < h->count; at++) {
-    *energy_J += h->volume_m3[at] *
-                 dea_viscous_energy(h->B[at], h->b_Pa[h->part_material[at]], h->C[at]);
+    *energy_J +=
+        h->volume_m3[at] * dea_viscous_energy(h->B[at], h->b_Pa[h->part_material[at]], h->C[at]);
   }
   return DEA_OK;
 }

@@ -15,8 +15,8 @@ struct dea_branches {
 };
 
 struct dea_internal_variables {
-  struct dea_arena memory;       // of all arrays
-  struct dea_branches *branches; // [part_material_count]
+  struct dea_arena memory;                           // of all arrays
+  struct dea_branches *branches;                     // [part_material_count]
   struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [part_material_count] of the step
   double *b_Pa;                                      // [part_material_count] of the step
   size_t *first;                    // [elements] its first point; SIZE_MAX: elastic
@@ -28,9 +28,6 @@ struct dea_internal_variables {
   double (*inverse_next)[6];        // [count] at the end of the step that is tried
   double (*C)[6], *volume_m3;       // [count] there
 };
-
-/* What an element is of, with its kappa and the step of its branches. */
-struct dea_part_material dea_solid_part_material_at(const struct dea_solid *solid, size_t e);
 
 /* branches: [part_material_count of the solid]. The film was held as it is for long: A = C^-1. out:
  * owned by the caller, NULL on failure. */

@@ -462,34 +462,19 @@ dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int
   return DEA_OK;
 }
 
-/* This rank's unknowns as K has them, node by node, from where the solid has them. */
-static void to_nodes(const struct dea_solid *s, const double *solid, double *nodes)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
-    for (int i = 0; i < p->per_node; i++) {
-      nodes[k++] = solid[dea_solid_at(s, (int)n, i)];
-    }
-  }
-}
-
-static void from_nodes(const struct dea_solid *s, const double *nodes, double *solid)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
-    for (int i = 0; i < p->per_node; i++) {
-      solid[dea_solid_at(s, (int)n, i)] = nodes[k++];
-    }
-  }
-}
-
+/* K has this rank's unknowns node by node, in local axes. */
 dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid *s, Vec vector,
                                  double *out)
 {
+  const struct dea_solid_problem *p = &s->problem;
   const PetscScalar *values;
   DEA_PETSC(ctx, VecGetArrayRead(vector, &values));
   memset(out, 0, s->problem.dofs * sizeof(double)); // zero where other ranks have it
-  from_nodes(s, values, out);
+  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
+    for (int i = 0; i < p->per_node; i++) {
+      out[dea_solid_at(s, (int)n, i)] = values[k++];
+    }
+  }
   DEA_PETSC(ctx, VecRestoreArrayRead(vector, &values));
   dea_solid_sum(out, s->problem.dofs);
   dea_solid_frame_vector(s, true, out);
@@ -503,10 +488,15 @@ dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid
 dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *s, double *values,
                                Vec vector)
 {
+  const struct dea_solid_problem *p = &s->problem;
   PetscScalar *rows;
   dea_solid_frame_vector(s, false, values);
   DEA_PETSC(ctx, VecGetArray(vector, &rows));
-  to_nodes(s, values, rows);
+  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
+    for (int i = 0; i < p->per_node; i++) {
+      rows[k++] = values[dea_solid_at(s, (int)n, i)];
+    }
+  }
   DEA_PETSC(ctx, VecRestoreArray(vector, &rows));
   return DEA_OK;
 }

@@ -167,7 +167,7 @@ struct dea_solid_found {
 struct dea_solid {
   struct dea_arena memory; // of all arrays but the loads and those of load_steps
   struct dea_solid_problem problem;
-  struct dea_solid_settings settings; // dea_solid_accept_unstable changes one of them
+  struct dea_solid_settings settings;
   struct dea_solid_state state;
   struct dea_solid_work work;
   struct dea_solid_found found;

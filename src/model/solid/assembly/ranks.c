@@ -146,6 +146,13 @@ void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size)
   return here;
 }
 
+void dea_solid_alloc_doubles(struct dea_arena *memory, size_t count, double **const *arrays)
+{
+  for (; *arrays != NULL; arrays++) {
+    **arrays = dea_arena_alloc(memory, count, sizeof(double));
+  }
+}
+
 dea_status dea_solid_check_interruption(struct dea_context *ctx)
 {
   return dea_interrupted_anywhere(ctx)

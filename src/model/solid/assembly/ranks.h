@@ -4,9 +4,11 @@
  * Mesh, displacements and forces are on every rank; elements, pieces of loads and rows of K are
  * split. What a decision hangs on is summed on one rank and sent to the others, so that all see the
  * same bits and go the same way. All functions but dea_solid_rank, dea_solid_ranks,
- * dea_solid_share and dea_solid_petsc are calls that all ranks make. */
+ * dea_solid_share, dea_solid_alloc_doubles and
+ * dea_solid_petsc are calls that all ranks make. */
 #pragma once
 
+#include "base/arena.h"
 #include "base/context.h"
 
 /* PETSc for this process; harmless when it runs already. */
@@ -22,6 +24,8 @@ int dea_solid_ranks(void);
 bool dea_solid_allreduce_any(bool here);
 /* Zeroed memory as of dea_alloc on all ranks, or NULL on all of them. */
 void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size);
+/* Several arrays of `count` numbers each, as dea_arena_alloc; arrays: NULL is its end. */
+void dea_solid_alloc_doubles(struct dea_arena *memory, size_t count, double **const *arrays);
 /* The status and message of the first rank with a failure, on all ranks. ctx: NULL where no message
  * is wanted. */
 dea_status dea_solid_allreduce(struct dea_context *ctx, dea_status status);

@@ -96,16 +96,12 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
   a->pressures = dea_solid_pressure_count(s);
   a->all = dea_solid_multiplier_count(s);
   a->row = dea_arena_alloc(&a->memory, a->all - a->pressures, sizeof *a->row);
-  double **const moves[] = {&a->right, &a->lambda}, **const pressures[] = {&a->pull, &a->nu};
-  double **const work[] = {&a->left, &a->towards, &a->gain, &a->theta};
-  for (size_t i = 0; i < 2; i++) {
-    *moves[i] = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-    *pressures[i] = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof work / sizeof *work; i++) {
-    *work[i] = dea_arena_alloc(&a->memory, a->all, sizeof(double));
-  }
-  a->conjugate = dea_arena_alloc(&a->memory, a->dofs, sizeof(double));
+  dea_solid_alloc_doubles(&a->memory, a->count * a->dofs,
+                          (double **[]){&a->right, &a->lambda, NULL});
+  dea_solid_alloc_doubles(&a->memory, a->count * a->all, (double **[]){&a->pull, &a->nu, NULL});
+  dea_solid_alloc_doubles(&a->memory, a->all,
+                          (double **[]){&a->left, &a->towards, &a->gain, &a->theta, NULL});
+  dea_solid_alloc_doubles(&a->memory, a->dofs, (double **[]){&a->conjugate, NULL});
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&a->memory)));
   find_rows(a);
   // of the state before the last step, which was a 1e-8 of the way, or of this one; other points

@@ -63,6 +63,7 @@ struct dea_solid_continuation {
   double *tangent, tangent_load; // of the path at last; [dofs]
   struct dea_continuation_plane plane;
   double *rate, *right, *start, *mode; // [dofs] each: work; mode: critical one, unit size
+  double *span, *bulge;                // [state_count] work
   double step, step_most, step_least;
   bool rough;                        // points on the way need not be exact
   bool arc;                          // its last two points make a parabola, which is followed
@@ -193,10 +194,7 @@ static dea_status bordered_step(struct dea_context *ctx, struct dea_solid_contin
   const struct dea_continuation_plane *plane = &t->plane;
   double off = off_plane(t), along = plane->load;
   DEA_TRY(ctx, displacement_rate(ctx, t));
-  for (size_t i = 0; i < p->dofs; i++) {
-    s->work.trial[i] = -s->work.g[i];
-  }
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+  DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
   for (size_t i = 0; i < p->dofs; i++) {
     off += plane->weight[i] * s->work.step[i];
     along += plane->weight[i] * t->rate[i];
@@ -241,8 +239,7 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   double dtau = 0, most = 0, before = *residual;
   int negative;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &t->energy_J));
-  *residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g)) /
-              (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+  *residual = dea_solid_residual(s);
   bool constrained = dea_solid_theta_max(s) < theta_share * o->volume_tol;
   *there = isfinite(before) && constrained && *residual < o->arc_rtol &&
            fabs(off_plane(t)) < plane_rtol * fabs(t->plane.length);
@@ -387,16 +384,6 @@ static double distance_from(struct dea_solid_continuation *t, const double *pred
   return sqrt(sum);
 }
 
-static enum dea_continuation_event event_between(const struct dea_continuation_path_point *a,
-                                                 const struct dea_continuation_path_point *b)
-{
-  if (a->point.slope * b->point.slope < 0) {
-    return DEA_CONTINUATION_LIMIT;
-  }
-  return a->point.unstable_modes != b->point.unstable_modes ? DEA_CONTINUATION_BIFURCATION
-                                                            : DEA_CONTINUATION_NOTHING;
-}
-
 /* How far the tangent at t->next is from that of the circle through both points with the tangent at
  * t->last: 0 for an arc, twice the distance from the prediction for a parallel path. t->rate
  * belongs to t->next. */
@@ -495,7 +482,10 @@ static void accept_point(struct dea_solid_continuation *t)
     t->tangent[i] = t->last.point.slope * t->rate[i];
   }
   t->tangent_load = t->last.point.slope;
-  t->event = event_between(&t->before, &t->last);
+  t->event = t->before.point.slope * t->last.point.slope < 0 ? DEA_CONTINUATION_LIMIT
+             : t->before.point.unstable_modes != t->last.point.unstable_modes
+                 ? DEA_CONTINUATION_BIFURCATION
+                 : DEA_CONTINUATION_NOTHING;
   t->arc = t->rough;
 }
 
@@ -603,22 +593,15 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
                                 struct dea_solid_continuation *t)
 {
   const struct dea_solid_problem *p = &s->problem;
-  size_t controls = s->work.load_steps.control_count, states = s->work.load_steps.state_count;
-  double **const of_dofs[] = {&t->metric, &t->held_rate, &t->tangent, &t->plane.weight,
-                              &t->rate,   &t->right,     &t->start,   &t->mode};
-  double **const of_controls[] = {&t->from, &t->goal, &t->now};
-  double **const of_states[] = {&t->before.state, &t->last.state, &t->critical.state,
-                                &t->next.state};
   t->memory.ctx = ctx;
-  for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
-    *of_dofs[i] = dea_arena_alloc(&t->memory, s->problem.dofs, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof of_controls / sizeof of_controls[0]; i++) {
-    *of_controls[i] = dea_arena_alloc(&t->memory, controls, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof of_states / sizeof of_states[0]; i++) {
-    *of_states[i] = dea_arena_alloc(&t->memory, states, sizeof(double));
-  }
+  dea_solid_alloc_doubles(&t->memory, p->dofs,
+                          (double **[]){&t->metric, &t->held_rate, &t->tangent, &t->plane.weight,
+                                        &t->rate, &t->right, &t->start, &t->mode, NULL});
+  dea_solid_alloc_doubles(&t->memory, s->work.load_steps.control_count,
+                          (double **[]){&t->from, &t->goal, &t->now, NULL});
+  dea_solid_alloc_doubles(&t->memory, s->work.load_steps.state_count,
+                          (double **[]){&t->before.state, &t->last.state, &t->critical.state,
+                                        &t->next.state, &t->span, &t->bulge, NULL});
   DEA_TRY_MEMORY(!dea_solid_allreduce_any(t->memory.failed));
   double volume = 0;
   dea_solid_lump_volume(s, t->metric);
@@ -696,12 +679,9 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
     return dea_fail(ctx, DEA_E_ARGUMENT, "a path takes a step and a unit of displacement");
   }
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
-  double *goal = dea_solid_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
-  DEA_TRY_MEMORY(goal != NULL);
+  double *goal = s->work.load_steps.controls_goal;
   dea_solid_controls_goal(s, voltage_V, goal);
-  dea_status status = dea_continuation_create_to(ctx, s, goal, options, out);
-  dea_free(ctx, goal);
-  return status;
+  return DEA_CHAIN(ctx, dea_continuation_create_to(ctx, s, goal, options, out));
 }
 
 void dea_solid_continuation_destroy(struct dea_context *ctx, struct dea_solid_continuation *t)
@@ -866,18 +846,11 @@ static dea_status locate_between(struct dea_context *ctx, struct dea_solid_conti
 dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_solid_continuation *t,
                                          struct dea_continuation_point *point)
 {
-  struct bracket b = {0};
+  struct bracket b = {.span = t->span, .bulge.state = t->bulge};
   if (t->event == DEA_CONTINUATION_NOTHING) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the last step has passed no critical point");
   }
-  const size_t states = t->s->work.load_steps.state_count;
-  b.span = dea_solid_alloc(ctx, 2 * states, sizeof *b.span);
-  dea_status status = b.span != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    b.bulge.state = b.span + states;
-    status = locate_between(ctx, t, &b);
-  }
-  dea_free(ctx, b.span);
+  dea_status status = locate_between(ctx, t, &b);
   if (status != DEA_OK) {
     dea_solid_state_set(t->s, t->last.state);
     dea_solid_forget(t->s);

@@ -62,23 +62,16 @@ struct follow {
 
 static dea_status allocate(struct follow *w)
 {
-  double **const both[] = {&w->first, &w->x, &w->f, &w->x_old, &w->f_old};
-  double **const moves[] = {&w->h, &w->h_old};
-  double **const pressures[] = {&w->theta, &w->nu, &w->weight};
-  w->keep = dea_arena_alloc(&w->memory, w->s->work.load_steps.state_count, sizeof(double));
-  for (size_t i = 0; i < sizeof both / sizeof both[0]; i++) {
-    *both[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof moves / sizeof moves[0]; i++) {
-    *moves[i] = dea_arena_alloc(&w->memory, w->dofs, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof pressures / sizeof pressures[0]; i++) {
-    *pressures[i] = dea_arena_alloc(&w->memory, w->pressures, sizeof(double));
-  }
+  dea_solid_alloc_doubles(&w->memory, w->s->work.load_steps.state_count,
+                          (double **[]){&w->keep, NULL});
+  dea_solid_alloc_doubles(&w->memory, w->count,
+                          (double **[]){&w->first, &w->x, &w->f, &w->x_old, &w->f_old, NULL});
+  dea_solid_alloc_doubles(&w->memory, w->dofs, (double **[]){&w->h, &w->h_old, NULL});
+  dea_solid_alloc_doubles(&w->memory, w->pressures,
+                          (double **[]){&w->theta, &w->nu, &w->weight, NULL});
   for (int i = 0; i < DEPTH; i++) {
-    w->dx[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
-    w->df[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
-    w->dh[i] = dea_arena_alloc(&w->memory, w->dofs, sizeof(double));
+    dea_solid_alloc_doubles(&w->memory, w->count, (double **[]){&w->dx[i], &w->df[i], NULL});
+    dea_solid_alloc_doubles(&w->memory, w->dofs, (double **[]){&w->dh[i], NULL});
   }
   return dea_solid_allreduce(w->memory.ctx, dea_arena_status(&w->memory));
 }
@@ -348,8 +341,7 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
   DEA_TRY(ctx, dea_solid_check_interruption(ctx));
   bool renewed = k == 0 || renew_loads(w, k);
   DEA_TRY(ctx, find_forces(ctx, w));
-  w->report->residual = sqrt(dea_solid_dot(s, w->h, w->h)) /
-                        (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+  w->report->residual = dea_solid_residual(s);
   w->report->theta_max = dea_solid_theta_max(s);
   DEA_TRY(ctx, find_step(ctx, w));
   dea_solid_predict_tangent(s, w->f);
@@ -369,7 +361,6 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
     if (k == 0 && knows_before(w)) {
       bend(w);
     }
-    w->report->corrections++;
     dea_context_counters(ctx)->newton_iterations++;
   }
   return DEA_OK;
@@ -430,10 +421,7 @@ static dea_status solve_last_step(struct dea_context *ctx, struct follow *w)
   bool stiff = s->found.stiff_factor_fits;
   dea_solid_state_get(s, s->work.load_steps.factored);
   s->found.factor_before = true;
-  for (size_t i = 0; i < w->dofs; i++) {
-    s->work.trial[i] = -s->work.g[i];
-  }
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+  DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
   if (stiff) {
     dea_solid_change_bulk_modulus(s, DEA_SOLID_STIFF);
   }

@@ -124,13 +124,17 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
   return DEA_CHAIN(ctx, status);
 }
 
-/* step = -K^-1 g with the factor that is there. */
-static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
+dea_status dea_solid_linear_step(struct dea_context *ctx, struct dea_solid *s)
 {
   for (size_t k = 0; k < s->problem.dofs; k++) {
     s->work.trial[k] = -s->work.g[k];
   }
   return DEA_CHAIN(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+}
+
+double dea_solid_residual(const struct dea_solid *s)
+{
+  return norm(s, s->work.g) / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
 }
 
 void dea_solid_predict_tangent(struct dea_solid *s, const double *step)
@@ -312,7 +316,7 @@ static dea_status apply_step(struct dea_context *ctx, struct dea_solid *s, const
 /* A step with the factor that is there, close to the equilibrium. */
 static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struct newton *d)
 {
-  DEA_TRY(ctx, linear_step(ctx, s));
+  DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
   for (size_t k = 0; k < s->problem.dofs; k++) {
     s->work.trial[k] = s->state.u[k] + s->work.step[k];
   }
@@ -324,7 +328,6 @@ static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struc
     return DEA_OK;
   }
   d->chords++;
-  d->report->corrections++;
   dea_context_counters(ctx)->newton_iterations++;
   return apply_step(ctx, s, d, 1, false);
 }
@@ -343,7 +346,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       DEA_TRY(ctx, factorise_definite(ctx, s, d, &there));
       d->report->iterations++;
     }
-    DEA_TRY(ctx, linear_step(ctx, s));
+    DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
     dea_solid_predict_tangent(s, there == 0 ? s->work.step : NULL);
     double slope = dea_solid_dot(s, s->work.g, s->work.step);
     bool found = search_line(ctx, s, d, slope, &fraction, &rise);
@@ -387,7 +390,7 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
   DEA_TRY(ctx,
           dea_solid_assemble(ctx, s, d->voltage_V, chord ? DEA_FORCE : tangent, &report->energy_J));
   double size = norm(s, s->work.g);
-  report->residual = size / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+  report->residual = dea_solid_residual(s);
   report->theta_max = dea_solid_theta_max(s);
   if (d->chord && (d->chords == o->lag_jacobian || !(size < lag_rate * d->norm_before)) &&
       !(report->residual < o->newton_rtol)) {
@@ -509,7 +512,7 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
   s->work.takes_increment = false;
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, factorise_definite(ctx, s, &d, &there));
-  DEA_TRY(ctx, linear_step(ctx, s));
+  DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
   // where the whole of the linear step leads too far the held components go their way all the same
   for (double length = 1; length > 0.1; length /= 2) {
     for (size_t i = 0; i < s->problem.dofs; i++) {
