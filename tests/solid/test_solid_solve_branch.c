@@ -85,7 +85,7 @@ TEST(test_both_sides_of_the_pitchfork)
   const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
   double z[2], energy[2], flat;
   create();
-  dea_solid_accept_unstable(solid, true);
+  dea_solid_settings_of(solid)->accept_unstable = true;
   compress(1.5 * euler); // the second mode comes at 2.05
   assert_int_equal(report.unstable_modes, 1);
   flat = report.energy_J;

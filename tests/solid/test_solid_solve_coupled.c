@@ -210,7 +210,7 @@ TEST(test_unstable_modes_are_those_of_the_thin_film)
     for (int field = 0; field < 2; field++) {
       struct body body = strip(field == 0 ? DEA_SOLID_FIELD_THIN : DEA_SOLID_FIELD_COUPLED,
                                &location, cuts, COUNT, &ply, 1);
-      dea_solid_accept_unstable(body.solid, true);
+      dea_solid_settings_of(body.solid)->accept_unstable = true;
       solve(&body, voltages[i]);
       assert_int_equal(body.report.unstable_modes, wanted[i]);
       body_destroy(&body);

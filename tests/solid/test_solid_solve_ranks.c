@@ -107,7 +107,7 @@ static struct answer solve(const struct test_case *k)
     dea_solid_displacement(solid)[3 * (grid->node_count - 1)] = 0.1;
   }
   if (status == DEA_OK) {
-    dea_solid_accept_unstable(solid, k->stay);
+    dea_solid_settings_of(solid)->accept_unstable = k->stay;
   }
   for (int kV = 0; kV <= k->highest_kV && status == DEA_OK; kV++) {
     status = dea_load_steps_solve(ctx, solid, 1e3 * kV, &report);

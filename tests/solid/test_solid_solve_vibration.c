@@ -139,7 +139,7 @@ TEST(test_voltage_takes_tension_away)
   struct dea_solid_report report;
   double rest[1], square[UNSTABLE_MAX], sigma = pre_stress(&gent, 2);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
-  dea_solid_accept_unstable(solid, true);
+  dea_solid_settings_of(solid)->accept_unstable = true;
   assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
   assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 1, rest, NULL), DEA_OK);
   for (int i = 0; i < 2; i++) {

@@ -693,7 +693,7 @@ static dea_status find_charges(struct dea_context *ctx, struct dea_solid_object 
   double *all = dea_alloc(ctx, 2 * n + 2 * n * n, sizeof *all);
   DEA_TRY_MEMORY(all != NULL);
   dea_solid_channel_voltages(object->solid, all);
-  DEA_TRY_ELSE(ctx, dea_solid_charges(ctx, object->solid, all + n), dea_free(ctx, all));
+  DEA_TRY_ELSE(ctx, dea_solid_flows(ctx, object->solid, NULL, all + n, NULL), dea_free(ctx, all));
   for (size_t free = 0; free < 2; free++) {
     DEA_TRY_ELSE(ctx,
                  dea_solid_capacitances(ctx, object->solid, free == 0, all + 2 * n + free * n * n),

@@ -17,11 +17,10 @@ static dea_status evaluate_element(struct dea_solid *s, size_t e, const double *
                                    enum dea_eval_order level, const double *predicted)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
-  dea_solid_element_input(s, e, u, voltage_V, &place, &in);
-  in.predicted = predicted;
-  return element->type->evaluate(element, &in, level, s->work.element);
+  struct dea_solid_element_input at;
+  dea_solid_element_input(s, e, u, voltage_V, &at);
+  at.in.predicted = predicted;
+  return element->type->evaluate(element, &at.in, level, s->work.element);
 }
 
 /* ---- inertia ---- */
@@ -256,25 +255,13 @@ static dea_status scatter(struct dea_context *ctx, struct dea_solid *s, int node
 static dea_status fail_element(struct dea_context *ctx, const struct dea_solid *s, size_t e,
                                dea_status status)
 {
-  const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_element_strains *strains = dea_alloc(ctx, 1, sizeof *strains);
-  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], x[3] = {0};
-  const struct dea_element_input in = {
-      .part_material = dea_solid_part_material(s, e), .X = X, .u = u};
-  DEA_TRY_MEMORY(strains != NULL);
-  int count = dea_solid_gather(s, e, s->problem.grid->X, X);
-  dea_solid_gather(s, e, s->state.u, u);
-  bool inverted = status == DEA_E_DOMAIN && element->type->strains(element, &in, strains) != DEA_OK;
-  dea_free(ctx, strains);
-  for (int i = 0; i < 3 * count; i++) {
-    // dea_solid_gather has set it
-    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
-    x[i % 3] += 1e3 * X[i] / count;
-  }
+  struct dea_element_strains strains;
+  double x[3];
+  const bool inverted =
+      status == DEA_E_DOMAIN && dea_solid_element_strains(s, e, &strains) != DEA_OK;
+  dea_solid_element_middle(s, e, x);
   return dea_fail(ctx, inverted ? DEA_E_INVERTED : status,
-                  "element %zu around (%.4g, %.4g, %.4g) "
-                  "mm %s",
-                  e, x[0], x[1], x[2],
+                  "element %zu around (%.4g, %.4g, %.4g) mm %s", e, x[0], x[1], x[2],
                   inverted ? "turns inside out" : "is beyond its law's domain");
 }
 

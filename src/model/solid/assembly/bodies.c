@@ -441,31 +441,17 @@ static dea_status check_body(struct dea_context *ctx, struct dea_solid *s, size_
 }
 
 /* Supports on followers of a body, as on its nodes in a plane of symmetry, say nothing new where
- * what the body may do keeps them: tried with a large motion. */
+ * what the body may do keeps them: tried with a large motion u [dofs]. */
 static dea_status check_follower(struct dea_context *ctx, const struct dea_solid *s, size_t node,
-                                 size_t body)
+                                 double length_m, const double *u)
 {
-  static const double large[6] = {0.3, -0.7, 0.5, 0.9, -0.6, 0.4};
   const struct dea_solid_problem *p = &s->problem;
-  const struct dea_solid_body *b = &p->bodies[body];
   const double *Q = p->frame != NULL && p->frame[node] != 0 ? p->frames[p->frame[node] - 1] : NULL;
-  double w[3], M[9], r[3], u[3];
-  struct rotation q;
-  for (int i = 0; i < 3; i++) {
-    w[i] = (b->held >> (3 + i)) & 1 ? 0 : large[3 + i];
-  }
-  rotation_of(w, &q);
-  turn_matrix(&q, M);
-  arm_of(s, body, node, r);
-  for (int i = 0; i < 3; i++) {
-    double shift = (b->held >> i) & 1 ? 0 : large[i] * b->length_m;
-    u[i] = shift + M[3 * i] * r[0] + M[3 * i + 1] * r[1] + M[3 * i + 2] * r[2];
-  }
+  const double *v = u + 3 * node, *X = p->grid->X + 3 * node;
   for (size_t i = 0; i < 3; i++) {
     double displacement =
-        Q != NULL ? Q[3 * i] * u[0] + Q[3 * i + 1] * u[1] + Q[3 * i + 2] * u[2] : u[i];
-    if (p->held[3 * node + i] && fabs(displacement) > 1e-9 * b->length_m) {
-      const double *X = p->grid->X + 3 * node;
+        Q != NULL ? Q[3 * i] * v[0] + Q[3 * i + 1] * v[1] + Q[3 * i + 2] * v[2] : v[i];
+    if (p->held[3 * node + i] && fabs(displacement) > 1e-9 * length_m) {
       return dea_fail(ctx, DEA_E_ARGUMENT,
                       "the node at (%.4g, %.4g, %.4g) mm is held and follows a body that may move "
                       "it: hold the body instead",
@@ -477,17 +463,22 @@ static dea_status check_follower(struct dea_context *ctx, const struct dea_solid
 
 dea_status dea_solid_bodies_hold(struct dea_context *ctx, struct dea_solid *s)
 {
+  static const double large[6] = {0.3, -0.7, 0.5, 0.9, -0.6, 0.4};
   struct dea_solid_problem *p = &s->problem;
-  for (size_t n = 0; n < p->grid->node_count; n++) {
-    size_t k = body_of(s, n);
-    if (k != SIZE_MAX) {
-      DEA_TRY(ctx, check_follower(ctx, s, n, k));
-      memset(p->held + 3 * n, DEA_FOLLOWS, 3);
+  for (size_t k = 0; k < p->body_count; k++) {
+    const struct dea_solid_body *b = &p->bodies[k];
+    for (size_t i = 0; i < 6; i++) {
+      const bool held = (b->held >> i) & 1;
+      p->held[3 * b->node + i] = held ? DEA_HELD : DEA_FREE;
+      s->work.trial[3 * b->node + i] = held ? 0 : large[i] * b->length_m;
     }
   }
-  for (size_t k = 0; k < p->body_count; k++) {
-    for (size_t i = 0; i < 6; i++) {
-      p->held[3 * p->bodies[k].node + i] = (p->bodies[k].held >> i) & 1 ? DEA_HELD : DEA_FREE;
+  dea_solid_bodies_place(s, s->work.trial);
+  for (size_t n = 0; n < p->grid->node_count; n++) {
+    const size_t k = body_of(s, n);
+    if (k != SIZE_MAX) {
+      DEA_TRY(ctx, check_follower(ctx, s, n, p->bodies[k].length_m, s->work.trial));
+      memset(p->held + 3 * n, DEA_FOLLOWS, 3);
     }
   }
   return DEA_OK;
@@ -554,43 +545,6 @@ dea_status dea_solid_bodies_create(struct dea_context *ctx, struct dea_solid *s,
 }
 
 /* ---- what callers ask of a body ---- */
-
-static dea_status no_such_body(struct dea_context *ctx, size_t body)
-{
-  return dea_fail(ctx, DEA_E_ARGUMENT, "no such body or component: %zu", body);
-}
-
-dea_status dea_solid_body_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t body,
-                                    int components, const double shift_m[3],
-                                    const double turn_rad[3])
-{
-  if (body >= solid->problem.body_count || (components & ~63) != 0) {
-    return no_such_body(ctx, body);
-  }
-  const struct dea_solid_body *b = &solid->problem.bodies[body];
-  for (size_t i = 0; i < 6; i++) {
-    if ((components >> i) & 1) {
-      solid->problem.held[3 * b->node + i] = DEA_PRESCRIBED;
-      solid->state.u_goal[3 * b->node + i] = i < 3 ? shift_m[i] : b->length_m * turn_rad[i - 3];
-    }
-  }
-  return DEA_OK;
-}
-
-dea_status dea_solid_body_release(struct dea_context *ctx, struct dea_solid *solid, size_t body,
-                                  int components)
-{
-  if (body >= solid->problem.body_count || (components & ~63) != 0) {
-    return no_such_body(ctx, body);
-  }
-  for (size_t i = 0; i < 6; i++) {
-    if ((components >> i) & 1) {
-      solid->problem.held[3 * solid->problem.bodies[body].node + i] = DEA_FREE;
-    }
-  }
-  solid->found.checked = false;
-  return DEA_OK;
-}
 
 void dea_solid_body_place(const struct dea_solid *solid, size_t body, double shift_m[3],
                           double turn_rad[3])

@@ -77,17 +77,16 @@ dea_status dea_solid_element_capacitance(struct dea_solid *s, size_t e, const do
                                          double *capacitance_F)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
-  dea_solid_element_input(s, e, u, s->state.voltage_V, &place, &in);
-  double step = field_step_V_per_m * in.part_material->thickness_m, square = in.voltage_V;
+  struct dea_solid_element_input at;
+  dea_solid_element_input(s, e, u, s->state.voltage_V, &at);
+  double step = field_step_V_per_m * at.part_material.thickness_m, square = at.in.voltage_V;
   square *= square;
   const double squares[2] = {fmax(square - step * step, 0), square + step * step};
   double energy[2] = {0, 0};
   dea_status status = DEA_OK;
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
-    in.voltage_V = sqrt(squares[i]);
-    status = element->type->evaluate(element, &in, DEA_ENERGY, s->work.element);
+    at.in.voltage_V = sqrt(squares[i]);
+    status = element->type->evaluate(element, &at.in, DEA_ENERGY, s->work.element);
     energy[i] = s->work.element->energy_J;
   }
   *capacitance_F = 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]);
@@ -162,16 +161,6 @@ static dea_status add_own(struct dea_solid *s, const struct sums *sums)
   return DEA_OK;
 }
 
-dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *s, double *charge_C)
-{
-  size_t count = s->problem.channel_count + 1;
-  memset(charge_C, 0, count * sizeof *charge_C);
-  DEA_TRY(ctx, refuse_coupled(ctx, s));
-  DEA_TRY(ctx, dea_solid_allreduce(ctx, add_own(s, &(struct sums){.charge_C = charge_C})));
-  dea_solid_sum(charge_C, count);
-  return DEA_OK;
-}
-
 dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *s, const double *per_s,
                                  double *conductance_S)
 {
@@ -189,11 +178,13 @@ dea_status dea_solid_flows(struct dea_context *ctx, struct dea_solid *s, const d
   size_t count = s->problem.channel_count + 1;
   const struct sums sums = {.charge_C = charge_C, .per_s = per_s, .leak_A = leak_A};
   memset(charge_C, 0, count * sizeof *charge_C);
-  memset(leak_A, 0, (count + 1) * sizeof *leak_A);
+  if (leak_A != NULL) {
+    memset(leak_A, 0, (count + 1) * sizeof *leak_A);
+  }
   DEA_TRY(ctx, refuse_coupled(ctx, s));
   DEA_TRY(ctx, dea_solid_allreduce(ctx, add_own(s, &sums)));
   dea_solid_sum(charge_C, count);
-  dea_solid_sum(leak_A, count + 1);
+  dea_solid_sum(leak_A, leak_A != NULL ? count + 1 : 0);
   return DEA_OK;
 }
 

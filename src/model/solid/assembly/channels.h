@@ -16,18 +16,15 @@ void dea_solid_channel_voltages(const struct dea_solid *solid, double *voltage_V
 /* Charge over voltage of an element between electrodes at displacements u that are held. */
 dea_status dea_solid_element_capacitance(struct dea_solid *solid, size_t e, const double *u,
                                          double *capacitance_F);
-/* Charges at the last equilibrium, [channel_count + 1]; their sum is 0. DEA_E_UNSUPPORTED for a
- * coupled field. */
-dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *solid, double *charge_C);
-
 /* Current over the voltage of the whole through films whose conductance is so many times their
  * capacitance, per_s [part_material_count]. DEA_E_UNSUPPORTED for a coupled field. */
 dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *solid,
                                  const double *per_s, double *conductance_S);
 
-/* Charges as above, and the currents that leak from the channels through those films,
- * [channel_count
- * + 1], followed by the power that this takes. DEA_E_UNSUPPORTED for a coupled field. */
+/* Charges at the last equilibrium, [channel_count + 1], whose sum is 0, and the currents that leak
+ * from the channels through films of such a conductance, [channel_count + 1], followed by the power
+ * that this takes; per_s and leak_A: NULL where they are not wanted. DEA_E_UNSUPPORTED for a
+ * coupled field. */
 dea_status dea_solid_flows(struct dea_context *ctx, struct dea_solid *solid, const double *per_s,
                            double *charge_C, double *leak_A);
 

@@ -84,8 +84,7 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
 static void add_slope(const struct dea_charge *c, const double *u, double *slope)
 {
   struct dea_solid *s = c->solid;
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
+  struct dea_solid_element_input at;
   for (size_t i = 0; i < s->problem.own_count; i++) {
     const size_t e = s->problem.own[i];
     const struct dea_element *element = dea_solid_element(s, e);
@@ -93,12 +92,12 @@ static void add_slope(const struct dea_charge *c, const double *u, double *slope
     if (!s->problem.active[e] || a == 0 || V == 0) {
       continue;
     }
-    dea_solid_element_input(s, e, u, s->state.voltage_V, &place, &in);
+    dea_solid_element_input(s, e, u, s->state.voltage_V, &at);
     for (int k = 0; k < 2; k++) {
       const int *nodes;
       const int dofs = 3 * dea_solid_nodes(s, e, &nodes);
-      in.voltage_V = k == 0 ? 0 : V;
-      if (element->type->evaluate(element, &in, DEA_FORCE, s->work.element) != DEA_OK) {
+      at.in.voltage_V = k == 0 ? 0 : V;
+      if (element->type->evaluate(element, &at.in, DEA_FORCE, s->work.element) != DEA_OK) {
         return;
       }
       for (int j = 0; j < dofs; j++) {

@@ -24,16 +24,6 @@ static size_t control_count(const struct dea_solid *s)
   return count + (s->state.drop_V != NULL ? p->grid->element_count : 0);
 }
 
-static size_t state_count(const struct dea_solid *s)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  size_t count = p->dofs + dea_solid_pressure_count(s);
-  for (size_t i = 0; i < p->load_count; i++) {
-    count += p->loads[i].multiplier_count;
-  }
-  return count;
-}
-
 void dea_load_steps_release(struct dea_load_steps *path)
 {
   dea_arena_free(&path->memory);
@@ -43,20 +33,18 @@ void dea_load_steps_release(struct dea_load_steps *path)
 dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
 {
   struct dea_load_steps *path = &s->work.load_steps;
-  size_t states = state_count(s), controls = control_count(s);
+  size_t states = s->problem.dofs + dea_solid_multiplier_count(s), controls = control_count(s);
   if (path->state_count == states && path->control_count == controls) {
     return DEA_OK;
   }
   dea_load_steps_release(path); // a load more: what was before is no guide
   path->memory.ctx = ctx;
-  path->keep = dea_arena_alloc(&path->memory, states, sizeof(double));
-  path->factored = dea_arena_alloc(&path->memory, states, sizeof(double));
-  path->controls = dea_arena_alloc(&path->memory, controls, sizeof(double));
-  path->controls_from = dea_arena_alloc(&path->memory, controls, sizeof(double));
-  path->controls_goal = dea_arena_alloc(&path->memory, controls, sizeof(double));
-  path->at = dea_arena_alloc(&path->memory, controls, sizeof(double));
-  path->before_last = dea_arena_alloc(&path->memory, states, sizeof(double));
-  path->last = dea_arena_alloc(&path->memory, states, sizeof(double));
+  dea_solid_alloc_doubles(
+      &path->memory, states,
+      (double **[]){&path->keep, &path->factored, &path->before_last, &path->last, NULL});
+  dea_solid_alloc_doubles(
+      &path->memory, controls,
+      (double **[]){&path->controls, &path->controls_from, &path->controls_goal, &path->at, NULL});
   if (path->memory.failed) {
     dea_load_steps_release(path);
     return DEA_E_MEMORY;
@@ -184,4 +172,30 @@ bool dea_solid_controls_increment(struct dea_solid *s, const double *controls)
   dea_solid_bodies_prepare(s);
   dea_solid_bodies_transfer(s, s->work.increment);
   return any;
+}
+
+dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *s,
+                                struct dea_solid_saved_state *out)
+{
+  *out = (struct dea_solid_saved_state){.memory = {.ctx = ctx}};
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
+  const struct dea_load_steps *steps = &s->work.load_steps;
+  out->state = dea_arena_alloc(&out->memory, steps->state_count, sizeof *out->state);
+  out->controls = dea_arena_alloc(&out->memory, steps->control_count, sizeof *out->controls);
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&out->memory)));
+  dea_solid_state_get(s, out->state);
+  dea_solid_controls_get(s, out->controls);
+  return DEA_OK;
+}
+
+void dea_solid_saved_state_free(struct dea_solid_saved_state *saved)
+{
+  dea_arena_free(&saved->memory);
+}
+
+void dea_solid_restore_state(struct dea_solid *s, const struct dea_solid_saved_state *at)
+{
+  dea_solid_state_set(s, at->state);
+  dea_solid_controls_set(s, at->controls);
+  dea_solid_forget(s);
 }

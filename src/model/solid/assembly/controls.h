@@ -21,3 +21,15 @@ void dea_solid_controls_set(struct dea_solid *s, const double *controls);
 /* Sets work.increment: from the held components' displacements to those of the controls. false:
  * they are there. */
 bool dea_solid_controls_increment(struct dea_solid *s, const double *controls);
+
+/* Where the solid has been. */
+struct dea_solid_saved_state {
+  struct dea_arena memory;
+  double *state, *controls;
+};
+/* out: freed by the caller, also on failure. */
+dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *solid,
+                                struct dea_solid_saved_state *out);
+void dea_solid_saved_state_free(struct dea_solid_saved_state *saved);
+/* Brings the solid back to there. */
+void dea_solid_restore_state(struct dea_solid *solid, const struct dea_solid_saved_state *at);

@@ -5,9 +5,9 @@
 
 /* v . K v of motions v [count][dofs], K that of the solid as good as incompressible at the state
  * (dea_solid_assemble_stiff), of which theta has to belong to u; without inertia. Held components
- * of v are 0, and followers of bodies move with them. out: [count]. Leaves work.g undefined. */
+ * of v are 0; followers of bodies are set in v. out: [count]. Leaves work.g undefined. */
 dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, size_t count,
-                                const double *v, double *out);
+                                double *v, double *out);
 
 /* v A v + 2 q . B^T v - q . M q / kappa and v . M v of a motion v [dofs] with pressures q
  * [multipliers] of elements and of loads, at the state and its pressures alone, without kappa but

@@ -3,6 +3,8 @@
 #include "model/solid/assembly/internal_variables.h"
 #include "model/solid/assembly/potential.h"
 
+#include <stdint.h>
+
 static dea_status set_kind(struct dea_context *ctx, struct dea_solid *s, size_t e)
 {
   struct dea_solid_problem *p = &s->problem;
@@ -84,26 +86,58 @@ dea_status dea_solid_find_laminates(struct dea_context *ctx, struct dea_solid *s
   return DEA_OK;
 }
 
+/* What an element is of, with its kappa and the step of its branches. */
+static struct dea_part_material part_material_at(const struct dea_solid *s, size_t e)
+{
+  const struct dea_internal_variables *h = s->state.internal_variables;
+  struct dea_part_material part_material = *dea_solid_part_material(s, e);
+  part_material.kappa_Pa = dea_solid_bulk_modulus(s, e);
+  if (h != NULL && h->first[e] != SIZE_MAX) {
+    part_material.viscous = h->B[h->first[e]];
+    part_material.viscous_Pa = h->b_Pa[s->problem.part_material_of[e]];
+  }
+  return part_material;
+}
+
 void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *u, double voltage_V,
-                             struct dea_solid_element_place *place, struct dea_element_input *out)
+                             struct dea_solid_element_input *out)
 {
   const struct dea_solid_problem *p = &s->problem;
   const struct dea_element *element = dea_solid_element(s, e);
   const int *nodes;
   int count = dea_solid_nodes(s, e, &nodes);
-  place->part_material = dea_solid_part_material_at(s, e);
-  dea_solid_gather(s, e, p->grid->X, place->X);
-  dea_solid_gather(s, e, u, place->u);
+  out->part_material = part_material_at(s, e);
+  dea_solid_gather(s, e, p->grid->X, out->X);
+  dea_solid_gather(s, e, u, out->u);
   for (int n = 0; n < count && element->type->per_node > 3; n++) {
-    place->potential[n] = u[dea_solid_at(s, nodes[n], 3)];
+    out->potential[n] = u[dea_solid_at(s, nodes[n], 3)];
   }
-  *out = (struct dea_element_input){
-      .part_material = &place->part_material,
-      .X = place->X,
-      .u = place->u,
+  out->in = (struct dea_element_input){
+      .part_material = &out->part_material,
+      .X = out->X,
+      .u = out->u,
       .multiplier = s->state.multiplier + e * (size_t)p->elements.pressures,
-      .potential = place->potential,
+      .potential = out->potential,
       .potential_V_per_m = dea_solid_field_scale(s),
       .voltage_V = dea_solid_voltage_across(s, e, voltage_V),
   };
+}
+
+void dea_solid_element_middle(const struct dea_solid *s, size_t e, double x_mm[3])
+{
+  double X[DEA_HEX_DOFS_MAX] = {0};
+  const int count = dea_solid_gather(s, e, s->problem.grid->X, X);
+  x_mm[0] = x_mm[1] = x_mm[2] = 0;
+  for (int i = 0; i < 3 * count; i++) {
+    x_mm[i % 3] += 1e3 * X[i] / count;
+  }
+}
+
+dea_status dea_solid_element_strains(const struct dea_solid *s, size_t e,
+                                     struct dea_element_strains *out)
+{
+  const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_solid_element_input at;
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &at);
+  return element->type->strains(element, &at.in, out);
 }

@@ -10,12 +10,6 @@
 
 // Tension -----------------------------------------------------------------------------------------
 
-/* The smaller principal one of a force 11 22 12. */
-static double smaller_of(const double T[3])
-{
-  return 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
-}
-
 /* Height of an element [m]; of a surface what it is thick. */
 static double height_of(const struct dea_solid *s, size_t e)
 {
@@ -47,41 +41,40 @@ static bool counts(const struct dea_solid *s, size_t e, size_t k, enum extent ex
          is_electrode(s, k);
 }
 
-/* An element as a surface, with the forces of what counts, on their own bases. */
-static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent extent,
-                             double voltage_V, struct dea_solid_element_place *place,
-                             struct dea_element_input *in, struct dea_membrane_state *out)
+/* An element as a surface, with its forces over its own height. */
+static dea_status ply_of(const struct dea_solid *s, size_t e, double voltage_V,
+                         struct dea_membrane_state *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  double share = height_of(s, e) / dea_solid_part_material(s, e)->thickness_m;
-  bool alone = true;
-  dea_solid_element_input(s, e, s->state.u, voltage_V, place, in);
-  dea_status status = element->type->membrane_state(element, in, out);
-  for (int i = 0; i < 3 * out->count && status == DEA_OK; i++) {
-    out->force[i / 3][i % 3] *= share;
-  }
-  for (int p = 0; p < out->count && status == DEA_OK; p++) {
+  const double share = height_of(s, e) / dea_solid_part_material(s, e)->thickness_m;
+  struct dea_solid_element_input at;
+  dea_solid_element_input(s, e, s->state.u, voltage_V, &at);
+  dea_status status = element->type->membrane_state(element, &at.in, out);
+  for (int p = 0; status == DEA_OK && p < out->count; p++) {
     out->tension[p] *= share;
+    for (int i = 0; i < 3; i++) {
+      out->force[p][i] *= share;
+    }
   }
+  return status;
+}
+
+/* The same with the forces of what counts, each on its own basis. */
+static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent extent,
+                             double voltage_V, struct dea_membrane_state *out)
+{
+  dea_status status = ply_of(s, e, voltage_V, out);
   for (size_t k = (size_t)s->problem.laminate[e]; k != e && status == DEA_OK;
        k = (size_t)s->problem.laminate[k]) {
-    struct dea_solid_element_place at;
-    struct dea_element_input of_other;
     struct dea_membrane_state other;
-    if (!counts(s, e, k, extent)) {
-      continue;
+    status = counts(s, e, k, extent) ? ply_of(s, k, voltage_V, &other) : status;
+    for (int p = 0; counts(s, e, k, extent) && status == DEA_OK && p < out->count; p++) {
+      for (int i = 0; i < 3; i++) {
+        out->force[p][i] += other.force[p][i];
+      }
+      const double *T = out->force[p]; // 11 22 12
+      out->tension[p] = 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
     }
-    alone = false;
-    element = dea_solid_element(s, k);
-    share = height_of(s, k) / dea_solid_part_material(s, k)->thickness_m;
-    dea_solid_element_input(s, k, s->state.u, voltage_V, &at, &of_other);
-    status = element->type->membrane_state(element, &of_other, &other);
-    for (int i = 0; i < 3 * out->count && status == DEA_OK; i++) {
-      out->force[i / 3][i % 3] += share * other.force[i / 3][i % 3];
-    }
-  }
-  for (int p = 0; p < out->count && status == DEA_OK && !alone; p++) {
-    out->tension[p] = smaller_of(out->force[p]);
   }
   return status;
 }
@@ -167,16 +160,12 @@ static enum extent extent_of(const struct dea_solid *s, size_t e)
 static dea_status reach_of(const struct dea_solid *s, size_t e, const struct dea_material *material,
                            struct dea_solid_extremes *out)
 {
-  const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
   struct dea_element_strains strains;
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  dea_status status = element->type->strains(element, &in, &strains);
-  for (int q = 0; status == DEA_OK && q < element->points; q++) {
+  dea_status status = dea_solid_element_strains(s, e, &strains);
+  for (int q = 0; status == DEA_OK && q < dea_solid_element(s, e)->points; q++) {
     const double *C = strains.C[q];
     double plane[3] = {C[0], C[1], C[5]};
-    dea_part_material_pull_back(in.part_material, plane, plane);
+    dea_part_material_pull_back(dea_solid_part_material(s, e), plane, plane);
     double root = hypot(0.5 * (plane[0] - plane[1]), plane[2]);
     double middle = 0.5 * (plane[0] + plane[1]);
     dea_reach_merge(&out->reach, dea_material_reach(material, sqrt(middle + root),
@@ -185,21 +174,34 @@ static dea_status reach_of(const struct dea_solid *s, size_t e, const struct dea
   return status;
 }
 
+/* An extreme's quantity at a point in the plane; direction: of the tension. */
+static double quantity_of(const struct dea_solid *s, size_t e, double voltage_V,
+                          const struct dea_membrane_state *film,
+                          const struct dea_solid_film_data *data, enum dea_film_extreme which,
+                          int p, const double direction[2])
+{
+  const double across_V = dea_solid_voltage_across(s, e, voltage_V);
+  const double field =
+      fabs(dea_part_material_field(dea_solid_part_material(s, e), across_V)) * film->area[p];
+  const double stretch = data->pre_stretch * sqrt(film->area[p]), *T = film->force[p];
+  return which == DEA_FILM_FIELD ? field
+         : which == DEA_FILM_MARGIN
+             ? 1 - field / dea_breakdown_field(data->material, stretch)
+             : T[0] * direction[0] * direction[0] + T[1] * direction[1] * direction[1] +
+                   2 * T[2] * direction[0] * direction[1];
+}
+
 /* The field of one element between electrodes. */
 static dea_status field_of(const struct dea_solid *s, size_t e,
                            const struct dea_solid_film_data *data, struct dea_solid_extremes *out)
 {
-  const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
+  const double V = s->state.voltage_V;
   struct dea_membrane_state film;
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  dea_status status = element->type->membrane_state(element, &in, &film);
+  dea_status status = ply_of(s, e, V, &film);
   for (int p = 0; status == DEA_OK && p < film.count; p++) {
-    double field = fabs(dea_part_material_field(in.part_material, in.voltage_V)) * film.area[p];
-    double stretch = data->pre_stretch * sqrt(film.area[p]);
-    double margin = 1 - field / dea_breakdown_field(data->material, stretch);
-    out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
+    const double margin = quantity_of(s, e, V, &film, data, DEA_FILM_MARGIN, p, NULL);
+    out->true_field_V_per_m =
+        fmax(out->true_field_V_per_m, quantity_of(s, e, V, &film, data, DEA_FILM_FIELD, p, NULL));
     out->area = fmax(out->area, film.area[p]);
     out->breakdown_margin = fmin(out->breakdown_margin, margin);
     out->breakdown_probability = fmax(
@@ -217,11 +219,9 @@ static dea_status find_compressed(const struct dea_solid *s,
   size_t k = e;
   memset(compressed, 0, DEA_HEX_GAUSS_MAX * sizeof *compressed);
   do {
-    struct dea_solid_element_place place;
-    struct dea_element_input in;
     struct dea_membrane_state film = {.count = 0};
     if (films[s->problem.part_material_of[k]].material != NULL) {
-      status = surface_of(s, k, OF_FILM, s->state.voltage_V, &place, &in, &film);
+      status = surface_of(s, k, OF_FILM, s->state.voltage_V, &film);
     }
     for (int p = 0; p < film.count && status == DEA_OK; p++) {
       compressed[p] = compressed[p] || film.tension[p] < 0;
@@ -239,15 +239,11 @@ static dea_status compression_of(const struct dea_solid *s, const struct dea_sol
 {
   const double pi = 3.14159265358979323846;
   const double borne_Nm = 4 * pi * pi * bending_stiffness_Nm(s, e), height = height_of(s, e);
-  const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
   struct dea_element_strains strains;
   bool compressed[DEA_HEX_GAUSS_MAX];
   dea_status status = find_compressed(s, films, e, compressed);
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  status = status == DEA_OK ? element->type->strains(element, &in, &strains) : status;
-  for (int q = 0; status == DEA_OK && q < element->points; q++) {
+  status = status == DEA_OK ? dea_solid_element_strains(s, e, &strains) : status;
+  for (int q = 0; status == DEA_OK && q < dea_solid_element(s, e)->points; q++) {
     const int p = q % laminate->count;
     *ratio += compressed[p] ? fmax(-laminate->tension[p], 0) * laminate->area[p] *
                                   strains.volume_m3[q] / (height * borne_Nm)
@@ -272,18 +268,14 @@ static dea_status tension_of(const struct dea_solid *s, const struct dea_solid_f
   const struct ring ring = ring_of(s, films, e);
   const bool tension = has_tension(s, &ring, e), laminate = ring.lowest && ring.film && ring.moves;
   const bool same = extent_of(s, e) == OF_LAMINATE || s->problem.laminate[e] == (int)e;
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
   struct dea_membrane_state film = {.count = 0};
-  dea_status status = DEA_OK;
-  if (tension) {
-    status = surface_of(s, e, extent_of(s, e), s->state.voltage_V, &place, &in, &film);
-  }
+  dea_status status =
+      tension ? surface_of(s, e, extent_of(s, e), s->state.voltage_V, &film) : DEA_OK;
   for (int p = 0; p < film.count && status == DEA_OK; p++) {
     out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, film.tension[p]);
   }
   if (status == DEA_OK && laminate && !(tension && same)) {
-    status = surface_of(s, e, OF_LAMINATE, s->state.voltage_V, &place, &in, &film);
+    status = surface_of(s, e, OF_LAMINATE, s->state.voltage_V, &film);
   }
   return status == DEA_OK && laminate && is_compressed(&film)
              ? compression_of(s, films, e, &film, &out->compression_ratio)
@@ -394,20 +386,6 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
 
 // Slopes -----------------------------------------------------------------------------------------
 
-static double quantity_of(const struct dea_element_input *in, const struct dea_membrane_state *film,
-                          const struct dea_solid_film_data *data, enum dea_film_extreme which,
-                          int p, const double direction[2])
-{
-  const double field =
-      fabs(dea_part_material_field(in->part_material, in->voltage_V)) * film->area[p];
-  const double stretch = data->pre_stretch * sqrt(film->area[p]), *T = film->force[p];
-  return which == DEA_FILM_FIELD ? field
-         : which == DEA_FILM_MARGIN
-             ? 1 - field / dea_breakdown_field(data->material, stretch)
-             : T[0] * direction[0] * direction[0] + T[1] * direction[1] * direction[1] +
-                   2 * T[2] * direction[0] * direction[1];
-}
-
 /* Direction of the smaller principal force. */
 static void find_direction(const double T[3], double out[2])
 {
@@ -420,12 +398,10 @@ double dea_solid_extreme_at(const struct dea_solid *s, const struct dea_solid_fi
                             enum dea_film_extreme which, const struct dea_film_place *place,
                             double voltage_V)
 {
-  struct dea_solid_element_place at;
-  struct dea_element_input in;
+  const size_t e = place->element;
   struct dea_membrane_state film;
-  return surface_of(s, place->element, extent_of(s, place->element), voltage_V, &at, &in, &film) ==
-                 DEA_OK
-             ? quantity_of(&in, &film, &films[s->problem.part_material_of[place->element]], which,
+  return surface_of(s, e, extent_of(s, e), voltage_V, &film) == DEA_OK
+             ? quantity_of(s, e, voltage_V, &film, &films[s->problem.part_material_of[e]], which,
                            place->point, place->direction)
              : NAN;
 }
@@ -435,8 +411,7 @@ bool dea_solid_extreme_find(struct dea_solid *s, const struct dea_solid_film_dat
 {
   const double sign = which == DEA_FILM_FIELD ? 1 : -1;
   double best = -INFINITY;
-  struct dea_solid_element_place at;
-  struct dea_element_input in;
+  const double V = s->state.voltage_V;
   struct dea_membrane_state film;
   *out = (struct dea_film_place){.element = 0};
   for (size_t e = 0; e < s->problem.grid->element_count; e++) { // all ranks all of them
@@ -444,12 +419,11 @@ bool dea_solid_extreme_find(struct dea_solid *s, const struct dea_solid_film_dat
     const struct ring ring = ring_of(s, films, e);
     bool asked = which == DEA_FILM_TENSION ? has_tension(s, &ring, e)
                                            : data->material != NULL && s->problem.active[e];
-    asked =
-        asked && surface_of(s, e, extent_of(s, e), s->state.voltage_V, &at, &in, &film) == DEA_OK;
+    asked = asked && surface_of(s, e, extent_of(s, e), V, &film) == DEA_OK;
     for (int p = 0; asked && p < film.count; p++) {
       struct dea_film_place place = {.element = e, .point = p};
       find_direction(film.force[p], place.direction);
-      double value = sign * quantity_of(&in, &film, data, which, p, place.direction);
+      double value = sign * quantity_of(s, e, V, &film, data, which, p, place.direction);
       if (value > best) { // not where it is unknown
         best = value;
         *out = place;

@@ -69,39 +69,26 @@ struct dea_fronts {
 struct analysis {
   struct dea_arena memory;
   int nodes;
-  const PetscInt *ptr, *index; // K's blocks, lent: those of the diagonal and right of it
-  PetscInt *near_ptr, *near;   // neighbours of each node
-  int *order;                  // [nodes] node of each place
-  int *parent;                 // [nodes] first row below each column, -1: none
-  PetscInt **rows;             // [nodes] places below each column where L has a block
-  int *row_count;              // [nodes] of them
-  int *of;                     // [nodes] front of each column
+  const PetscInt *ptr, *index;       // K's blocks, lent: those of the diagonal and right of it
+  const PetscInt *whole_ptr, *whole; // K's blocks of both triangles, lent
+  PetscInt *near_ptr, *near;         // neighbours of each node, rising
+  int *order;                        // [nodes] node of each place
+  int *parent;                       // [nodes] first row below each column, -1: none
+  PetscInt **rows;                   // [nodes] places below each column where L has a block
+  int *row_count;                    // [nodes] of them
+  int *of;                           // [nodes] front of each column
 };
 
-/* next: [nodes]. */
-static void list_neighbours(struct analysis *a, PetscInt *next)
+/* Neighbours without the node itself: with it PETSc would order nodes of equal pattern as one. */
+static void list_neighbours(struct analysis *a)
 {
+  PetscInt count = 0;
   for (int i = 0; i < a->nodes; i++) {
-    for (PetscInt k = a->ptr[i]; k < a->ptr[i + 1]; k++) {
-      if (a->index[k] != i) {
-        a->near_ptr[i + 1]++;
-        a->near_ptr[a->index[k] + 1]++;
-      }
+    for (PetscInt k = a->whole_ptr[i]; k < a->whole_ptr[i + 1]; k++) {
+      a->near[count] = a->whole[k];
+      count += a->whole[k] != i;
     }
-  }
-  for (int i = 0; i < a->nodes; i++) {
-    a->near_ptr[i + 1] += a->near_ptr[i];
-  }
-  for (int i = 0; i < a->nodes; i++) {
-    next[i] = a->near_ptr[i];
-  }
-  for (int i = 0; i < a->nodes; i++) {
-    for (PetscInt k = a->ptr[i]; k < a->ptr[i + 1]; k++) {
-      if (a->index[k] != i) {
-        a->near[next[i]++] = (int)a->index[k];
-        a->near[next[a->index[k]]++] = i;
-      }
-    }
+    a->near_ptr[i + 1] = count;
   }
 }
 
@@ -126,9 +113,6 @@ static dea_status order_nodes(struct dea_context *ctx, struct analysis *a)
   double *values = dea_arena_alloc(&a->memory, (size_t)a->near_ptr[a->nodes], sizeof *values);
   Mat graph = NULL;
   DEA_TRY(ctx, dea_arena_status(&a->memory));
-  for (int i = 0; i < a->nodes; i++) { // PETSc takes sorted rows
-    PetscSortInt(a->near_ptr[i + 1] - a->near_ptr[i], a->near + a->near_ptr[i]);
-  }
   DEA_PETSC(ctx, MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, a->nodes, a->nodes, a->near_ptr,
                                            a->near, values, &graph));
   dea_status status = find_order(ctx, a, graph);
@@ -141,26 +125,6 @@ static void find_places(const struct analysis *a, int *place)
 {
   for (int k = 0; k < a->nodes; k++) {
     place[a->order[k]] = k;
-  }
-}
-
-/* parent of each column (Liu 1990), by the shortest ways so far in above [nodes]. */
-static void find_parents(struct analysis *a, const int *place, int *above)
-{
-  for (int k = 0; k < a->nodes; k++) {
-    int node = a->order[k];
-    a->parent[k] = above[k] = -1;
-    for (int e = a->near_ptr[node]; e < a->near_ptr[node + 1]; e++) {
-      int at = place[a->near[e]];
-      while (at >= 0 && at < k) {
-        int next = above[at];
-        above[at] = k;
-        if (next < 0) {
-          a->parent[at] = k;
-        }
-        at = next == k ? -1 : next;
-      }
-    }
   }
 }
 
@@ -377,24 +341,24 @@ static dea_status reserve(struct dea_context *ctx, struct dea_fronts *f)
 
 static dea_status analyse(struct dea_context *ctx, struct analysis *a, struct dea_fronts *f)
 {
-  size_t n = (size_t)a->nodes, blocks = (size_t)a->ptr[a->nodes];
+  size_t n = (size_t)a->nodes;
   int *work = dea_arena_alloc(&a->memory, PER * n, sizeof *work);
   size_t *next = dea_arena_alloc(&a->memory, n, sizeof *next);
   a->near_ptr = dea_arena_alloc(&a->memory, n + 1, sizeof *a->near_ptr);
-  a->near = dea_arena_alloc(&a->memory, 2 * blocks, sizeof *a->near);
+  a->near = dea_arena_alloc(&a->memory, (size_t)a->whole_ptr[n], sizeof *a->near);
   a->order = dea_arena_alloc(&a->memory, n, sizeof *a->order);
   a->parent = dea_arena_alloc(&a->memory, n, sizeof *a->parent);
   a->rows = dea_arena_alloc(&a->memory, n, sizeof *a->rows);
   a->row_count = dea_arena_alloc(&a->memory, n, sizeof *a->row_count);
   a->of = dea_arena_alloc(&a->memory, n, sizeof *a->of);
   f->place = dea_arena_alloc(&f->memory, n, sizeof *f->place);
-  f->blocks = dea_arena_alloc(&f->memory, blocks, sizeof *f->blocks);
+  f->blocks = dea_arena_alloc(&f->memory, (size_t)a->ptr[n], sizeof *f->blocks);
   DEA_TRY(ctx, dea_arena_status(&a->memory));
   DEA_TRY(ctx, dea_arena_status(&f->memory));
-  list_neighbours(a, work);
+  list_neighbours(a);
   DEA_TRY(ctx, order_nodes(ctx, a));
   find_places(a, f->place);
-  find_parents(a, f->place, work);
+  DEA_TRY(ctx, find_rows(ctx, a, f->place, work)); // for the parents
   order_by_tree(a, work);
   find_places(a, f->place);
   DEA_TRY(ctx, find_rows(ctx, a, f->place, work));
@@ -414,7 +378,7 @@ dea_status dea_fronts_create(struct dea_context *ctx, Mat K, struct dea_fronts *
 {
   struct analysis a = {.memory = {.ctx = ctx}};
   PetscInt nodes;
-  PetscBool there;
+  PetscBool there, both;
   *out = NULL;
   struct dea_fronts *f = dea_alloc(ctx, 1, sizeof *f);
   DEA_TRY_MEMORY(f != NULL);
@@ -425,7 +389,11 @@ dea_status dea_fronts_create(struct dea_context *ctx, Mat K, struct dea_fronts *
   if (status == DEA_OK && there) {
     a.nodes = f->nodes = (int)nodes;
     f->entries_of_K = count_entries(K);
-    status = analyse(ctx, &a, f);
+    status = dea_solid_petsc(
+        ctx, MatGetRowIJ(K, 0, PETSC_TRUE, PETSC_TRUE, &nodes, &a.whole_ptr, &a.whole, &both),
+        "MatGetRowIJ");
+    status = status == DEA_OK ? analyse(ctx, &a, f) : status;
+    MatRestoreRowIJ(K, 0, PETSC_TRUE, PETSC_TRUE, &nodes, &a.whole_ptr, &a.whole, &both);
     MatRestoreRowIJ(K, 0, PETSC_FALSE, PETSC_TRUE, &nodes, &a.ptr, &a.index, &there);
   }
   dea_arena_free(&a.memory);

@@ -22,48 +22,23 @@ void dea_solid_update_multipliers(struct dea_solid *s)
   }
 }
 
-void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor)
-{
-  s->state.bulk_factor *= factor;
-}
-
-static const double dropped = 0x1p-100; // of kappa
-
-void dea_solid_drop_bulk_modulus(struct dea_solid *s)
-{
-  dea_solid_scale_bulk_modulus(s, dropped);
-}
-
-void dea_solid_restore_dropped_bulk_modulus(struct dea_solid *s)
-{
-  dea_solid_scale_bulk_modulus(s, 1 / dropped);
-}
-
-/* p + kappa theta stays what it is when kappa becomes factor times as large. */
-static void keep_pressures(struct dea_solid *s, double factor)
+void dea_solid_change_bulk_modulus(struct dea_solid *s, double factor)
 {
   size_t pressures = (size_t)s->problem.elements.pressures;
   for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
     double kappa_Pa = dea_solid_bulk_modulus(s, i / pressures);
     s->state.multiplier[i] -= (factor - 1) * kappa_Pa * s->state.theta[i];
   }
+  s->state.bulk_factor *= factor;
 }
 
-void dea_solid_raise_bulk_modulus(struct dea_solid *s)
+dea_status dea_solid_assemble_forces(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                                     double *energy)
 {
-  keep_pressures(s, DEA_SOLID_STIFF);
-  dea_solid_scale_bulk_modulus(s, DEA_SOLID_STIFF);
-}
-
-void dea_solid_restore_bulk_modulus_at_pressure(struct dea_solid *s)
-{
-  dea_solid_scale_bulk_modulus(s, 1.0 / DEA_SOLID_STIFF);
-}
-
-void dea_solid_restore_bulk_modulus(struct dea_solid *s)
-{
-  keep_pressures(s, 1.0 / DEA_SOLID_STIFF);
-  dea_solid_scale_bulk_modulus(s, 1.0 / DEA_SOLID_STIFF);
+  s->state.bulk_factor *= dea_solid_dropped;
+  dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, energy);
+  s->state.bulk_factor /= dea_solid_dropped;
+  return status;
 }
 
 dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s)
@@ -71,14 +46,14 @@ dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s
   double energy;
   s->found.predicted_fits = s->found.factor_fits = false;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy)); // for theta
-  dea_solid_raise_bulk_modulus(s);
+  dea_solid_change_bulk_modulus(s, DEA_SOLID_STIFF);
   dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
-  dea_solid_restore_bulk_modulus(s);
+  dea_solid_change_bulk_modulus(s, 1.0 / DEA_SOLID_STIFF);
   return DEA_CHAIN(ctx, status);
 }
 
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   DEA_TRY(ctx, dea_solid_assemble_stiff(ctx, s));
-  return DEA_CHAIN(ctx, dea_solid_factorise(ctx, s, negative));
+  return DEA_CHAIN(ctx, dea_solid_factorise(ctx, s, DEA_FACTOR_EXACT, negative));
 }

@@ -15,19 +15,19 @@ struct dea_branches {
 };
 
 struct dea_internal_variables {
-  struct dea_arena memory;       // of all arrays
-  struct dea_branches *branches; // [part_material_count]
-  size_t *first;                 // [elements] its first point; SIZE_MAX: elastic
+  struct dea_arena memory;                           // of all arrays
+  struct dea_branches *branches;                     // [part_material_count]
   struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [part_material_count] of the step
   double *b_Pa;                                      // [part_material_count] of the step
-  double *B;                                         // [points][6] of the step
-  double (*inverse)[6];                              // [points] C^-1 at the accepted state
-  double (*inverse_next)[6];                         // at the end of the step that is tried
-  double (*A)[DEA_BRANCHES_MAX][6];                  // [points] at the accepted state
+  size_t *first;                    // [elements] its first point; SIZE_MAX: elastic
+  size_t count;                     // points
+  int *part_material;               // [count]
+  double (*B)[6];                   // [count] of the step
+  double (*A)[DEA_BRANCHES_MAX][6]; // [count] at the accepted state
+  double (*inverse)[6];             // [count] C^-1 at the accepted state
+  double (*inverse_next)[6];        // [count] at the end of the step that is tried
+  double (*C)[6], *volume_m3;       // [count] there
 };
-
-/* What an element is of, with its kappa and the step of its branches. */
-struct dea_part_material dea_solid_part_material_at(const struct dea_solid *solid, size_t e);
 
 /* branches: [part_material_count of the solid]. The film was held as it is for long: A = C^-1. out:
  * owned by the caller, NULL on failure. */
@@ -42,7 +42,7 @@ void dea_internal_variables_begin(struct dea_internal_variables *variables,
                                   const struct dea_solid *solid, double step_s);
 
 /* What the step adds to the solid's energy at its displacements [J]. */
-dea_status dea_internal_variables_energy(const struct dea_internal_variables *variables,
+dea_status dea_internal_variables_energy(struct dea_internal_variables *variables,
                                          const struct dea_solid *solid, double *energy_J);
 
 /* Energies of the branches, of the grid [J]. */
@@ -56,5 +56,4 @@ dea_status dea_internal_variables_close(struct dea_context *ctx,
                                         const struct dea_solid *solid,
                                         struct dea_solid_branch_energies *out);
 /* The state that was closed is the accepted one. */
-void dea_internal_variables_accept(struct dea_internal_variables *variables,
-                                   const struct dea_solid *solid);
+void dea_internal_variables_accept(struct dea_internal_variables *variables);

@@ -15,30 +15,28 @@ static dea_status mass_of(const struct dea_solid *s, size_t e, double *mass)
   return element->type->mass(element, dea_solid_part_material(s, e), X, mass);
 }
 
-/* The same in all local axes. */
-static dea_status add_point_masses(struct dea_context *ctx, struct dea_solid *s, Mat A,
-                                   double factor)
+/* A += factor d at free displacements, the same in all local axes; d[apart n] is of node n, or of
+ * its first component. */
+static dea_status add_diagonal(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor,
+                               const double *d, size_t apart)
 {
   const struct dea_solid_problem *p = &s->problem;
-  if (p->point_mass == NULL) {
-    return DEA_OK;
-  }
   for (size_t i = 3 * p->first_node; i < 3 * p->end_node; i++) {
-    double mass = p->held[i] ? 0 : factor * p->point_mass[i / 3];
-    int node = (int)(i / 3);
-    PetscInt row = (PetscInt)p->per_node * node + (PetscInt)(i % 3);
-    if (mass != 0) {
-      DEA_PETSC(ctx, MatSetValue(A, row, row, mass, ADD_VALUES));
+    const double value = p->held[i] ? 0 : factor * d[apart * (i / 3) + i % apart];
+    const PetscInt row = (PetscInt)((size_t)p->per_node * (i / 3) + i % 3);
+    if (value != 0) {
+      DEA_PETSC(ctx, MatSetValue(A, row, row, value, ADD_VALUES));
     }
   }
-  DEA_TRY(ctx, dea_solid_bodies_add_diagonal(ctx, s, A, factor, p->point_mass, 1));
+  DEA_TRY(ctx, dea_solid_bodies_add_diagonal(ctx, s, A, factor, d, apart));
   return DEA_CHAIN(ctx, dea_solid_end_matrix(ctx, A));
 }
 
 dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat A, double factor)
 {
   DEA_TRY(ctx, dea_solid_add_scalar(ctx, s, A, factor, mass_of));
-  return DEA_CHAIN(ctx, add_point_masses(ctx, s, A, factor));
+  const double *mass_kg = s->problem.point_mass;
+  return mass_kg != NULL ? add_diagonal(ctx, s, A, factor, mass_kg, 1) : DEA_OK;
 }
 
 /* 0 in K's pattern. */
@@ -138,6 +136,13 @@ void dea_solid_lump_volume(const struct dea_solid *s, double *volume)
       }
     }
   }
+}
+
+dea_status dea_solid_create_volume(struct dea_context *ctx, struct dea_solid *s, Mat *out)
+{
+  DEA_TRY(ctx, create_like_tangent(ctx, s, out));
+  dea_solid_lump_volume(s, s->work.trial);
+  return DEA_CHAIN(ctx, add_diagonal(ctx, s, *out, 1, s->work.trial, 3));
 }
 
 double dea_solid_volume_of(const struct dea_solid *s, size_t e)

@@ -12,6 +12,8 @@ dea_status dea_solid_create_mass(struct dea_context *ctx, struct dea_solid *s, M
 
 /* Volume lumped to the displacements [dofs]; 0 for potentials. */
 void dea_solid_lump_volume(const struct dea_solid *s, double *volume);
+/* The same as a matrix of K's pattern, without what is held, owned by the caller. */
+dea_status dea_solid_create_volume(struct dea_context *ctx, struct dea_solid *s, Mat *out);
 /* Volume of an element; 0 for an inverted one. */
 double dea_solid_volume_of(const struct dea_solid *s, size_t e);
 /* A += amount_Pa int grad : grad of the displacements; A as in dea_solid_add_scalar. */

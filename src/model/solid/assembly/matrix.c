@@ -258,10 +258,9 @@ dea_status dea_solid_stop_matrix(struct dea_context *ctx, Mat A)
 
 dea_status dea_solid_add_matrix(struct dea_context *ctx, Mat A, double factor, Mat B)
 {
-  int ranks;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   // of blocks on several ranks PETSc 3.18 adds only the first entries if told that patterns are one
-  DEA_PETSC(ctx, MatAXPY(A, factor, B, ranks > 1 ? SUBSET_NONZERO_PATTERN : SAME_NONZERO_PATTERN));
+  DEA_PETSC(ctx, MatAXPY(A, factor, B,
+                         dea_solid_ranks() > 1 ? SUBSET_NONZERO_PATTERN : SAME_NONZERO_PATTERN));
   return DEA_OK;
 }
 
@@ -368,21 +367,13 @@ static dea_status try_factor(struct dea_context *ctx, Mat A, PetscInt room_perce
   return DEA_OK;
 }
 
-/* That of a large mesh takes seconds, and hears nothing. */
-static dea_status check_before_factor(struct dea_context *ctx)
-{
-  return dea_interrupted_anywhere(ctx)
-             ? dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before the next factor")
-             : DEA_OK;
-}
-
 enum { ROOM = 25, ROOM_MAX = 400 };
 
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 {
   MatFactorError error = MAT_FACTOR_OUTMEMORY;
   dea_status status = DEA_OK;
-  DEA_TRY(ctx, check_before_factor(ctx));
+  DEA_TRY(ctx, dea_solid_check_interruption(ctx)); // that of a large mesh takes seconds
   dea_context_counters(ctx)->factorisations++;
   for (PetscInt capacity = ROOM; capacity <= ROOM_MAX && error == MAT_FACTOR_OUTMEMORY;
        capacity *= 2) {
@@ -409,15 +400,13 @@ static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s,
                                    int *negative)
 {
   const struct dea_solid_problem *p = &s->problem;
-  PetscMPIInt ranks;
   s->work.by_fronts = false;
   *negative = -1;
-  DEA_PETSC(ctx, MPI_Comm_size(PetscObjectComm((PetscObject)s->work.K), &ranks));
-  if (ranks > 1 || p->per_node != 3 || p->free_potentials > 0 || p->dofs > fronts_most ||
-      s->work.takes_small_pivots || s->work.no_fronts) {
+  if (dea_solid_ranks() > 1 || p->per_node != 3 || p->free_potentials > 0 ||
+      p->dofs > fronts_most || s->work.takes_small_pivots || s->work.no_fronts) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, check_before_factor(ctx));
+  DEA_TRY(ctx, dea_solid_check_interruption(ctx));
   if (s->work.fronts != NULL && !dea_fronts_fit(s->work.fronts, s->work.K)) {
     dea_fronts_destroy(ctx, s->work.fronts);
     s->work.fronts = NULL;
@@ -443,15 +432,7 @@ static dea_status solve_by_factor(struct dea_context *ctx, struct dea_solid *s, 
   return DEA_OK;
 }
 
-dea_status dea_solid_factor_any(struct dea_context *ctx, struct dea_solid *s)
-{
-  int fewer;
-  s->work.by_fronts = false;
-  DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
-  return DEA_CHAIN(ctx, dea_solid_rank_one_factor(ctx, s, solve_by_factor, &fewer));
-}
-
-/* The factor by MUMPS, as dea_solid_factorise. */
+/* The factor by MUMPS. */
 static dea_status factor_by_pivots(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   PetscInt minus, zero, plus;
@@ -463,12 +444,15 @@ static dea_status factor_by_pivots(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
+dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int rough,
+                               int *negative)
 {
   int fewer;
+  // with such terms a mode more or less makes a difference
+  const bool exact = rough == DEA_FACTOR_EXACT || s->work.rank_one.count > 0;
   s->found.stiff_factor_fits = false;
-  DEA_TRY(ctx, factor_by_fronts(ctx, s, 0, negative));
-  if (s->work.by_fronts) {
+  DEA_TRY(ctx, factor_by_fronts(ctx, s, exact ? 0 : rough, negative));
+  if (exact ? s->work.by_fronts : *negative >= 0) {
     dea_context_counters(ctx)->factorisations++;
   } else {
     DEA_TRY(ctx, factor_by_pivots(ctx, s, negative));
@@ -478,50 +462,19 @@ dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int
   return DEA_OK;
 }
 
-dea_status dea_solid_factor_roughly(struct dea_context *ctx, struct dea_solid *s, int most,
-                                    int *negative)
-{
-  if (s->work.rank_one.count > 0) { // a mode more or less makes a difference
-    return dea_solid_factorise(ctx, s, negative);
-  }
-  s->found.stiff_factor_fits = false;
-  DEA_TRY(ctx, factor_by_fronts(ctx, s, most, negative));
-  if (*negative >= 0) {
-    dea_context_counters(ctx)->factorisations++;
-  } else {
-    DEA_TRY(ctx, factor_by_pivots(ctx, s, negative));
-  }
-  return DEA_OK;
-}
-
-/* This rank's unknowns as K has them, node by node, from where the solid has them. */
-static void to_nodes(const struct dea_solid *s, const double *solid, double *nodes)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
-    for (int i = 0; i < p->per_node; i++) {
-      nodes[k++] = solid[dea_solid_at(s, (int)n, i)];
-    }
-  }
-}
-
-static void from_nodes(const struct dea_solid *s, const double *nodes, double *solid)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
-    for (int i = 0; i < p->per_node; i++) {
-      solid[dea_solid_at(s, (int)n, i)] = nodes[k++];
-    }
-  }
-}
-
+/* K has this rank's unknowns node by node, in local axes. */
 dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid *s, Vec vector,
                                  double *out)
 {
+  const struct dea_solid_problem *p = &s->problem;
   const PetscScalar *values;
   DEA_PETSC(ctx, VecGetArrayRead(vector, &values));
   memset(out, 0, s->problem.dofs * sizeof(double)); // zero where other ranks have it
-  from_nodes(s, values, out);
+  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
+    for (int i = 0; i < p->per_node; i++) {
+      out[dea_solid_at(s, (int)n, i)] = values[k++];
+    }
+  }
   DEA_PETSC(ctx, VecRestoreArrayRead(vector, &values));
   dea_solid_sum(out, s->problem.dofs);
   dea_solid_frame_vector(s, true, out);
@@ -535,10 +488,15 @@ dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid
 dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *s, double *values,
                                Vec vector)
 {
+  const struct dea_solid_problem *p = &s->problem;
   PetscScalar *rows;
   dea_solid_frame_vector(s, false, values);
   DEA_PETSC(ctx, VecGetArray(vector, &rows));
-  to_nodes(s, values, rows);
+  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
+    for (int i = 0; i < p->per_node; i++) {
+      rows[k++] = values[dea_solid_at(s, (int)n, i)];
+    }
+  }
   DEA_PETSC(ctx, VecRestoreArray(vector, &rows));
   return DEA_OK;
 }
@@ -567,64 +525,4 @@ dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, 
   DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->work.right));
   DEA_TRY(ctx, dea_solid_solve_rows(ctx, s, s->work.right, s->work.solution));
   return DEA_CHAIN(ctx, dea_solid_from_vector(ctx, s, s->work.solution, out));
-}
-
-/* Columns of right into those of a dense matrix, or its columns into those of out. */
-static dea_status set_columns(struct dea_context *ctx, struct dea_solid *s, size_t count,
-                              double *right, Mat columns)
-{
-  for (size_t k = 0; k < count; k++) {
-    Vec column;
-    collect(s, right + k * s->problem.dofs);
-    DEA_PETSC(ctx, MatDenseGetColumnVecWrite(columns, (PetscInt)k, &column));
-    dea_status status = dea_solid_to_vector(ctx, s, right + k * s->problem.dofs, column);
-    DEA_PETSC(ctx, MatDenseRestoreColumnVecWrite(columns, (PetscInt)k, &column));
-    DEA_TRY(ctx, status);
-  }
-  return DEA_OK;
-}
-
-static dea_status get_columns(struct dea_context *ctx, struct dea_solid *s, size_t count,
-                              Mat columns, double *out)
-{
-  for (size_t k = 0; k < count; k++) {
-    Vec column;
-    DEA_PETSC(ctx, MatDenseGetColumnVecRead(columns, (PetscInt)k, &column));
-    dea_status status = dea_solid_from_vector(ctx, s, column, out + k * s->problem.dofs);
-    DEA_PETSC(ctx, MatDenseRestoreColumnVecRead(columns, (PetscInt)k, &column));
-    DEA_TRY(ctx, status);
-  }
-  return DEA_OK;
-}
-
-static dea_status solve_block(struct dea_context *ctx, struct dea_solid *s, size_t count,
-                              double *right, double *out, Mat sides[2])
-{
-  PetscInt rows;
-  DEA_PETSC(ctx, VecGetSize(s->work.right, &rows));
-  for (int k = 0; k < 2; k++) {
-    DEA_PETSC(ctx, MatCreateSeqDense(PETSC_COMM_SELF, rows, (PetscInt)count, NULL, &sides[k]));
-  }
-  DEA_TRY(ctx, set_columns(ctx, s, count, right, sides[0]));
-  DEA_PETSC(ctx, MatMatSolve(s->work.factor, sides[0], sides[1]));
-  return DEA_CHAIN(ctx, get_columns(ctx, s, count, sides[1], out));
-}
-
-dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, size_t count,
-                                double *right, double *out)
-{
-  const size_t dofs = s->problem.dofs;
-  Mat sides[2] = {NULL, NULL};
-  PetscMPIInt ranks;
-  DEA_PETSC(ctx, MPI_Comm_size(PetscObjectComm((PetscObject)s->work.K), &ranks));
-  if (count < 2 || ranks > 1 || s->work.by_fronts || s->work.rank_one.count > 0) {
-    for (size_t k = 0; k < count; k++) {
-      DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, right + k * dofs, out + k * dofs));
-    }
-    return DEA_OK;
-  }
-  dea_status status = solve_block(ctx, s, count, right, out, sides);
-  MatDestroy(&sides[0]);
-  MatDestroy(&sides[1]);
-  return DEA_CHAIN(ctx, status);
 }

@@ -49,24 +49,18 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
 
 /* LDL^T of A into *factor, which is analysed when it is NULL. */
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);
-/* Factor of K; *negative: its negative pivots beyond those of free potentials. */
-dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
-/* The same where a K that is not positive definite is counted, and solved with roughly at most:
- * negative pivots beyond `most` may be left out, and then there is no factor. */
-dea_status dea_solid_factor_roughly(struct dea_context *ctx, struct dea_solid *s, int most,
-                                    int *negative);
-/* Factor of K, of whatever definiteness. */
-dea_status dea_solid_factor_any(struct dea_context *ctx, struct dea_solid *s);
+/* Factor of K; *negative: its negative pivots beyond those of free potentials. rough: a K with up
+ * to so many is counted, and solved with roughly at most; of more some may be left out, and then
+ * there is no factor. */
+enum { DEA_FACTOR_EXACT = -1 }; // K is solved with, of whatever definiteness
+dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int rough,
+                               int *negative);
 /* x = K^-1 right with the present factor; vectors of K's rows, not the same. */
 dea_status dea_solid_solve_rows(struct dea_context *ctx, struct dea_solid *s, Vec right, Vec x);
 /* out = K^-1 right with the present factor, [dofs] both, in global components; what is on followers
  * of a body goes to the body, and they move with it. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out);
-/* The same of several, right and out [count][dofs], with the factor read once; right: free to be
- * written over. */
-dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, size_t count,
-                                double *right, double *out);
 /* Unknowns of the whole [dofs] in global components into a vector of K's rows; they are in local
  * ones after that. */
 dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *s, double *values,

@@ -82,7 +82,7 @@ struct dea_solid_state {
   double *theta;       // [elements][elements.pressures] J - 1, projected, by dea_solid_assemble;
                        // dea_solid_predict writes over it
   double bulk_factor;  // kappa is so many times that of the part materials, a power of 2; at first
-                       // 1, by dea_solid_scale_bulk_modulus and steps in time
+                       // 1, by solvers and steps in time
   double *force;       // [dofs] dead loads [N] and charges as they stand, by dea_solid_controls_set
   double *force_goal;  // [dofs] those that the next solve goes to, by the caller
   double *u_goal;      // [nodes][3] of prescribed (local) components [m], by dea_solid_prescribe
@@ -167,7 +167,7 @@ struct dea_solid_found {
 struct dea_solid {
   struct dea_arena memory; // of all arrays but the loads and those of load_steps
   struct dea_solid_problem problem;
-  struct dea_solid_settings settings; // dea_solid_accept_unstable changes one of them
+  struct dea_solid_settings settings;
   struct dea_solid_state state;
   struct dea_solid_work work;
   struct dea_solid_found found;
@@ -179,10 +179,20 @@ static inline void dea_solid_forget(struct dea_solid *s)
   s->found.factor_fits = s->found.stiff_factor_fits = s->found.predicted_fits = false;
 }
 
-/* All multipliers of a solid. */
+/* Multipliers of the elements. */
 static inline size_t dea_solid_pressure_count(const struct dea_solid *s)
 {
   return s->problem.grid->element_count * (size_t)s->problem.elements.pressures;
+}
+
+/* Those, and behind them those of each load. */
+static inline size_t dea_solid_multiplier_count(const struct dea_solid *s)
+{
+  size_t count = dea_solid_pressure_count(s);
+  for (size_t i = 0; i < s->problem.load_count; i++) {
+    count += s->problem.loads[i].multiplier_count;
+  }
+  return count;
 }
 
 /* Place of an unknown of a node. */

@@ -10,13 +10,6 @@
 #include <string.h>
 #include <sys/mman.h>
 
-static int rank_count(void)
-{
-  PetscMPIInt size = 1;
-  MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  return size;
-}
-
 /* Outside of mpirun Open MPI need not look for networks: a fifth of the start-up. */
 static void start_mpi_alone(void)
 {
@@ -66,7 +59,7 @@ static dea_status start_blas(struct dea_context *ctx)
 /* A signal may reach one of the ranks alone. */
 static void agree_on_interruptions(struct dea_context *ctx)
 {
-  dea_context_set_agreement(ctx, rank_count() > 1 ? dea_solid_allreduce_any : NULL);
+  dea_context_set_agreement(ctx, dea_solid_ranks() > 1 ? dea_solid_allreduce_any : NULL);
 }
 
 dea_status dea_solid_start(struct dea_context *ctx)
@@ -92,7 +85,7 @@ dea_status dea_solid_start(struct dea_context *ctx)
   PetscPushErrorHandler(return_code, NULL);
   agree_on_interruptions(ctx);
   DEA_TRY(ctx, dea_solid_allreduce(ctx, start_blas(ctx)));
-  if (rank_count() > 1 &&
+  if (dea_solid_ranks() > 1 &&
       atexit(dea_solid_stop) != 0) { // mpirun takes a process that leaves for crashed
     return dea_fail(ctx, DEA_E_TOOL, "PETSc's end could not be arranged");
   }
@@ -129,6 +122,13 @@ int dea_solid_rank(void)
   return rank;
 }
 
+int dea_solid_ranks(void)
+{
+  PetscMPIInt size = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size;
+}
+
 bool dea_solid_allreduce_any(bool here)
 {
   int flag = here;
@@ -146,6 +146,13 @@ void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size)
   return here;
 }
 
+void dea_solid_alloc_doubles(struct dea_arena *memory, size_t count, double **const *arrays)
+{
+  for (; *arrays != NULL; arrays++) {
+    **arrays = dea_arena_alloc(memory, count, sizeof(double));
+  }
+}
+
 dea_status dea_solid_check_interruption(struct dea_context *ctx)
 {
   return dea_interrupted_anywhere(ctx)
@@ -156,14 +163,14 @@ dea_status dea_solid_check_interruption(struct dea_context *ctx)
 dea_status dea_solid_allreduce(struct dea_context *ctx, dea_status status)
 {
   enum { TEXT = 256 };
-  if (rank_count() == 1) {
+  if (dea_solid_ranks() == 1) {
     return status;
   }
   struct {
     int status;
     char text[TEXT];
   } failure = {.status = (int)status};
-  const int rank = dea_solid_rank(), size = rank_count();
+  const int rank = dea_solid_rank(), size = dea_solid_ranks();
   int first = status != DEA_OK ? rank : size;
   MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
   if (first == size) {
@@ -181,7 +188,7 @@ dea_status dea_solid_allreduce(struct dea_context *ctx, dea_status status)
 
 void dea_solid_sum(double *values, size_t count)
 {
-  if (rank_count() > 1) { // not MPI_Allreduce, which may give each rank other bits
+  if (dea_solid_ranks() > 1) { // not MPI_Allreduce, which may give each rank other bits
     MPI_Reduce(dea_solid_rank() == 0 ? MPI_IN_PLACE : values, values, (int)count, MPI_DOUBLE,
                MPI_SUM, 0, PETSC_COMM_WORLD);
     MPI_Bcast(values, (int)count, MPI_DOUBLE, 0, PETSC_COMM_WORLD);
@@ -190,7 +197,7 @@ void dea_solid_sum(double *values, size_t count)
 
 double dea_solid_largest(double value)
 {
-  if (rank_count() > 1) {
+  if (dea_solid_ranks() > 1) {
     MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
   }
   return value;
@@ -198,7 +205,7 @@ double dea_solid_largest(double value)
 
 void dea_solid_share(size_t count, size_t *from, size_t *to)
 {
-  size_t rank = (size_t)dea_solid_rank(), size = (size_t)rank_count();
+  size_t rank = (size_t)dea_solid_rank(), size = (size_t)dea_solid_ranks();
   *from = count * rank / size;
   *to = count * (rank + 1) / size;
 }

@@ -3,10 +3,12 @@
  *
  * Mesh, displacements and forces are on every rank; elements, pieces of loads and rows of K are
  * split. What a decision hangs on is summed on one rank and sent to the others, so that all see the
- * same bits and go the same way. All functions but dea_solid_rank, dea_solid_share and
+ * same bits and go the same way. All functions but dea_solid_rank, dea_solid_ranks,
+ * dea_solid_share, dea_solid_alloc_doubles and
  * dea_solid_petsc are calls that all ranks make. */
 #pragma once
 
+#include "base/arena.h"
 #include "base/context.h"
 
 /* PETSc for this process; harmless when it runs already. */
@@ -15,12 +17,15 @@ void dea_solid_stop(void);
 /* "PETSc 3.18.5, SLEPc 3.18.2, MUMPS 5.5.1": those that are loaded, of MUMPS what PETSc's headers
  * say. */
 dea_status dea_solid_libraries(struct dea_context *ctx, char *out, size_t size);
-/* Number of this process among those that mpirun started, from 0. */
+/* Number of this process among those that mpirun started, from 0; and how many these are. */
 int dea_solid_rank(void);
+int dea_solid_ranks(void);
 /* Whether it is so on any rank. */
 bool dea_solid_allreduce_any(bool here);
 /* Zeroed memory as of dea_alloc on all ranks, or NULL on all of them. */
 void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size);
+/* Several arrays of `count` numbers each, as dea_arena_alloc; arrays: NULL is its end. */
+void dea_solid_alloc_doubles(struct dea_arena *memory, size_t count, double **const *arrays);
 /* The status and message of the first rank with a failure, on all ranks. ctx: NULL where no message
  * is wanted. */
 dea_status dea_solid_allreduce(struct dea_context *ctx, dea_status status);

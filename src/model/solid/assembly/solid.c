@@ -49,14 +49,12 @@ static dea_status allocate(struct dea_solid *s, const struct dea_solid_options *
 {
   struct dea_solid_problem *p = &s->problem;
   struct dea_arena *memory = &s->memory;
-  size_t elements = p->grid->element_count, pressures = (size_t)p->elements.pressures;
-  double **const of_dofs[] = {&s->state.u,       &s->state.force,    &s->state.force_goal,
-                              &s->state.u_goal,  &s->work.trial,     &s->work.g,
-                              &s->work.step,     &s->work.increment, &s->work.extrapolated,
-                              &s->found.reaction};
-  for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
-    *of_dofs[i] = dea_arena_alloc(memory, p->dofs, sizeof(double));
-  }
+  const size_t elements = p->grid->element_count;
+  dea_solid_alloc_doubles(memory, p->dofs,
+                          (double **[]){&s->state.u, &s->state.force, &s->state.force_goal,
+                                        &s->state.u_goal, &s->work.trial, &s->work.g, &s->work.step,
+                                        &s->work.increment, &s->work.extrapolated,
+                                        &s->found.reaction, NULL});
   struct dea_part_material *part_materials =
       dea_arena_alloc(memory, options->part_material_count, sizeof *part_materials);
   if (part_materials != NULL) {
@@ -68,8 +66,8 @@ static dea_status allocate(struct dea_solid *s, const struct dea_solid_options *
   p->part_material_of = dea_arena_alloc(memory, elements, sizeof *p->part_material_of);
   p->kind = dea_arena_alloc(memory, elements, sizeof *p->kind);
   p->held = dea_arena_alloc(memory, p->dofs, sizeof *p->held);
-  s->state.multiplier = dea_arena_alloc(memory, elements * pressures, sizeof(double));
-  s->state.theta = dea_arena_alloc(memory, elements * pressures, sizeof(double));
+  dea_solid_alloc_doubles(memory, dea_solid_pressure_count(s),
+                          (double **[]){&s->state.multiplier, &s->state.theta, NULL});
   s->work.element = dea_arena_alloc(memory, 1, sizeof *s->work.element);
   s->work.piece = dea_arena_alloc(memory, 1, sizeof *s->work.piece);
   return dea_arena_status(memory);
@@ -209,6 +207,37 @@ dea_status dea_solid_release(struct dea_context *ctx, struct dea_solid *solid, s
   }
   solid->found.checked = false;
   return DEA_OK;
+}
+
+/* The body, if there are such components of it. */
+static dea_status find_body(struct dea_context *ctx, const struct dea_solid *s, size_t body,
+                            int components, const struct dea_solid_body **out)
+{
+  if (body >= s->problem.body_count || (components & ~63) != 0) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "no such body or component: %zu", body);
+  }
+  *out = &s->problem.bodies[body];
+  return DEA_OK;
+}
+
+dea_status dea_solid_body_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t body,
+                                    int components, const double shift_m[3],
+                                    const double turn_rad[3])
+{
+  const struct dea_solid_body *b = NULL;
+  DEA_TRY(ctx, find_body(ctx, solid, body, components, &b));
+  const double L = b->length_m, turn_m[3] = {L * turn_rad[0], L * turn_rad[1], L * turn_rad[2]};
+  DEA_TRY(ctx, dea_solid_prescribe(ctx, solid, b->node, components & 7, shift_m));
+  return DEA_CHAIN(ctx, dea_solid_prescribe(ctx, solid, b->node + 1, components >> 3, turn_m));
+}
+
+dea_status dea_solid_body_release(struct dea_context *ctx, struct dea_solid *solid, size_t body,
+                                  int components)
+{
+  const struct dea_solid_body *b = NULL;
+  DEA_TRY(ctx, find_body(ctx, solid, body, components, &b));
+  DEA_TRY(ctx, dea_solid_release(ctx, solid, b->node, components & 7));
+  return DEA_CHAIN(ctx, dea_solid_release(ctx, solid, b->node + 1, components >> 3));
 }
 
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,

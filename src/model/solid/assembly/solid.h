@@ -71,7 +71,6 @@ struct dea_solid_options {
 /* How a solve went. */
 struct dea_solid_report {
   int iterations;              // steps with a tangent of their own
-  int corrections;             // steps with the factor that was there
   int factorisations, shifted; // shifted: of the factorisations
   int unstable_modes;          // negative pivots of the unshifted tangent at the end
   bool snapped;                // an unstable equilibrium on the way was left (branch.h)

@@ -1,7 +1,7 @@
 #include "model/solid/equilibrium/adjoint.h"
 
 #include "model/solid/assembly/assemble.h"
-#include "model/solid/assembly/elements.h"
+#include "model/solid/assembly/constraints.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
@@ -47,47 +47,22 @@ enum { OF_ELEMENTS, OF_LOADS, KINDS };
 struct dea_adjoint {
   struct dea_arena memory; // of the arrays
   struct dea_solid *s;
-  size_t dofs, pressures, count; // of u, of multipliers of elements, of answers
-  size_t all;                    // multipliers, those of loads behind the others
-  bool touches;                  // one of these is held
-  struct row *row;               // [all - pressures]
-  double *b, *L;                 // of each own element, see dea_element_type.constraint
-  double *lambda;                // [count][dofs]
-  double *nu;                    // [count][all]
-  /* of each answer, [count] times; right and conjugate of those that are not there yet: in turn */
-  double *right, *conjugate;     // [dofs] of the slopes at first, conjugate: K^-1 b^T towards
-  double *pull;                  // [all] Q_p
-  double *left, *towards, *gain; // [all] of b lambda, direction of a step, b conjugate
-  double *before;                // size of the last left
-  double (*largest)[KINDS];      // largest nu
-  size_t *open;                  // numbers of those that are not there yet
+  size_t dofs, pressures, count;      // of u, of multipliers of elements, of answers
+  size_t all;                         // multipliers, those of loads behind the others
+  bool touches;                       // one of these is held
+  struct row *row;                    // [all - pressures]
+  struct dea_constraints constraints; // of elements
+  double *right;                      // [count][dofs] Q_u; while it is solved for any
+  double *pull;                       // [count][all] Q_p
+  double *lambda;                     // [count][dofs]
+  double *nu;                         // [count][all]
+  /* Of the answer that is solved for: what b lambda leaves, the direction of a step, work; K^-1 b^T
+   * times the direction. */
+  double *left, *towards, *gain; // [all]
+  double *conjugate;             // [dofs]
   double *theta;                 // [all] L^T theta of the last assembly, of loads C / L
   double stiff;                  // kappa of the factor over that of the solid
 };
-
-static size_t most_of(const struct dea_adjoint *a)
-{
-  return (size_t)a->s->problem.elements.pressures;
-}
-
-static dea_status find_constraints(struct dea_context *ctx, struct dea_adjoint *a)
-{
-  const struct dea_solid_problem *p = &a->s->problem;
-  size_t most = most_of(a);
-  dea_status status = DEA_OK;
-  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
-    size_t e = p->own[k];
-    const struct dea_element *element = dea_solid_element(a->s, e);
-    struct dea_solid_element_place place;
-    struct dea_element_input in;
-    if (element->type->constraint != NULL) {
-      dea_solid_element_input(a->s, e, a->s->state.u, a->s->state.voltage_V, &place, &in);
-      status = element->type->constraint(element, &in, a->b + k * most * DEA_HEX_DOFS_MAX,
-                                         a->L + k * most * most);
-    }
-  }
-  return dea_solid_allreduce(ctx, status);
-}
 
 /* Rows of the constraints of loads. */
 static void find_rows(struct dea_adjoint *a)
@@ -113,38 +88,20 @@ static void find_rows(struct dea_adjoint *a)
   }
 }
 
-static size_t multipliers_of_loads(const struct dea_solid *s)
-{
-  size_t count = 0;
-  for (size_t k = 0; k < s->problem.load_count; k++) {
-    count += s->problem.loads[k].multiplier_count;
-  }
-  return count;
-}
-
 static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
 {
   struct dea_solid *s = a->s;
   struct dea_solid_report report = {0};
-  size_t own = s->problem.own_count, most = most_of(a);
   a->dofs = s->problem.dofs;
   a->pressures = dea_solid_pressure_count(s);
-  a->all = a->pressures + multipliers_of_loads(s);
+  a->all = dea_solid_multiplier_count(s);
   a->row = dea_arena_alloc(&a->memory, a->all - a->pressures, sizeof *a->row);
-  a->b = dea_arena_alloc(&a->memory, own * most * DEA_HEX_DOFS_MAX, sizeof(double));
-  a->L = dea_arena_alloc(&a->memory, own * most * most, sizeof(double));
-  a->lambda = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  a->nu = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
-  a->right = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  a->conjugate = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  double **const each[] = {&a->pull, &a->left, &a->towards, &a->gain};
-  for (size_t i = 0; i < sizeof each / sizeof each[0]; i++) {
-    *each[i] = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
-  }
-  a->theta = dea_arena_alloc(&a->memory, a->all, sizeof(double));
-  a->before = dea_arena_alloc(&a->memory, a->count, sizeof(double));
-  a->largest = dea_arena_alloc(&a->memory, a->count, sizeof *a->largest);
-  a->open = dea_arena_alloc(&a->memory, a->count, sizeof *a->open);
+  dea_solid_alloc_doubles(&a->memory, a->count * a->dofs,
+                          (double **[]){&a->right, &a->lambda, NULL});
+  dea_solid_alloc_doubles(&a->memory, a->count * a->all, (double **[]){&a->pull, &a->nu, NULL});
+  dea_solid_alloc_doubles(&a->memory, a->all,
+                          (double **[]){&a->left, &a->towards, &a->gain, &a->theta, NULL});
+  dea_solid_alloc_doubles(&a->memory, a->dofs, (double **[]){&a->conjugate, NULL});
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&a->memory)));
   find_rows(a);
   // of the state before the last step, which was a 1e-8 of the way, or of this one; other points
@@ -155,7 +112,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
     DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
   }
   a->stiff = s->found.factor_fits ? 1 : DEA_SOLID_STIFF;
-  return DEA_CHAIN(ctx, find_constraints(ctx, a));
+  return DEA_CHAIN(ctx, dea_constraints_find(ctx, &a->memory, s, &a->constraints));
 }
 
 dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,
@@ -179,24 +136,9 @@ void dea_adjoint_destroy(struct dea_context *ctx, struct dea_adjoint *a)
 }
 
 /* out [dofs] = b^T nu. */
-static void push(struct dea_adjoint *a, const double *nu, double *out)
+static void push(const struct dea_adjoint *a, const double *nu, double *out)
 {
-  struct dea_solid *s = a->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = most_of(a);
-  memset(out, 0, a->dofs * sizeof *out);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const double *b = a->b + k * most * DEA_HEX_DOFS_MAX;
-    const int *nodes;
-    size_t dofs = 3 * (size_t)dea_solid_nodes(s, e, &nodes);
-    for (size_t m = 0; m < count; m++, b += dofs) {
-      for (size_t i = 0; i < dofs; i++) {
-        out[3 * (size_t)nodes[i / 3] + i % 3] += nu[e * most + m] * b[i];
-      }
-    }
-  }
-  dea_solid_sum(out, a->dofs);
+  dea_constraints_push(&a->constraints, nu, out);
   for (size_t i = a->pressures; i < a->all; i++) {
     const struct row *row = &a->row[i - a->pressures];
     for (int j = 0; j < 3 * row->count; j++) {
@@ -208,21 +150,7 @@ static void push(struct dea_adjoint *a, const double *nu, double *out)
 /* out [all] = b v. */
 static void squeeze(const struct dea_adjoint *a, const double *v, double *out)
 {
-  struct dea_solid *s = a->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = most_of(a);
-  double own[DEA_HEX_DOFS_MAX];
-  memset(out, 0, a->all * sizeof *out);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const double *b = a->b + k * most * DEA_HEX_DOFS_MAX;
-    size_t dofs = 3 * (size_t)dea_solid_gather(s, e, v, own);
-    for (size_t m = 0; m < count; m++) {
-      for (size_t i = 0; i < dofs; i++) {
-        out[e * most + m] += b[m * dofs + i] * own[i];
-      }
-    }
-  }
+  dea_constraints_grow(&a->constraints, v, out);
   dea_solid_sum(out, a->pressures);
   for (size_t i = a->pressures; i < a->all; i++) {
     out[i] = row_times(&a->row[i - a->pressures], v);
@@ -231,7 +159,7 @@ static void squeeze(const struct dea_adjoint *a, const double *v, double *out)
 
 static double kappa_of(const struct dea_adjoint *a, size_t i)
 {
-  return i < a->pressures ? a->stiff * dea_solid_bulk_modulus(a->s, i / most_of(a))
+  return i < a->pressures ? a->stiff * dea_solid_bulk_modulus(a->s, i / a->constraints.most)
                           : a->row[i - a->pressures].stiffness;
 }
 
@@ -240,132 +168,103 @@ static int kind_of(const struct dea_adjoint *a, size_t i)
   return i < a->pressures ? OF_ELEMENTS : OF_LOADS;
 }
 
-/* out [count][dofs] = K^-1 right, without what is held. */
-static dea_status solve(struct dea_context *ctx, struct dea_adjoint *a, size_t count, double *out)
+/* out [dofs] = K^-1 right, without what is held. */
+static dea_status solve(struct dea_context *ctx, struct dea_adjoint *a, double *right, double *out)
 {
-  for (size_t k = 0; k < count; k++) {
-    dea_solid_release_held(a->s, a->right + k * a->dofs);
-  }
-  return DEA_CHAIN(ctx, dea_solid_solve_many(ctx, a->s, count, a->right, out));
-}
-
-/* left . kappa left, what is left of the second equation of an answer; change: the largest kappa
- * left. */
-static double size_of(const struct dea_adjoint *a, size_t number, double change[KINDS])
-{
-  const double *left = a->left + number * a->all;
-  double sum = 0;
-  change[OF_ELEMENTS] = change[OF_LOADS] = 0;
-  for (size_t i = 0; i < a->all; i++) {
-    double z = kappa_of(a, i) * left[i], *most = &change[kind_of(a, i)];
-    sum += left[i] * z;
-    *most = fmax(*most, fabs(z));
-  }
-  return sum;
+  dea_solid_release_held(a->s, right);
+  return DEA_CHAIN(ctx, dea_solid_solve_linear(ctx, a->s, right, out));
 }
 
 /* left -= L^-1 Q_p. */
 static void get_pressures(struct dea_adjoint *a, size_t number)
 {
-  const struct dea_solid_problem *p = &a->s->problem;
   const double *pull = a->pull + number * a->all;
-  size_t most = most_of(a);
-  double *sum = a->gain, *left = a->left + number * a->all;
+  double *sum = a->gain;
   memset(sum, 0, a->pressures * sizeof *sum);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
-    const double *L = a->L + k * most * most;
-    for (size_t m = 0; m < count && L[0] > 0; m++) {
-      sum[e * most + m] = pull[e * most + m];
-      for (size_t c = 0; c < m; c++) {
-        sum[e * most + m] -= L[m * count + c] * sum[e * most + c];
-      }
-      sum[e * most + m] /= L[m * count + m];
-    }
+  for (size_t k = 0; k < a->s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&a->constraints, k);
+    memcpy(sum + at.first, pull + at.first, at.count * sizeof *sum);
   }
+  dea_constraints_solve(&a->constraints, false, sum);
   dea_solid_sum(sum, a->pressures);
   for (size_t i = 0; i < a->pressures; i++) {
-    left[i] -= sum[i];
+    a->left[i] -= sum[i];
   }
   for (size_t i = a->pressures; i < a->all; i++) {
     const double root = a->row[i - a->pressures].root;
-    left[i] -= root > 0 ? pull[i] / root : 0;
+    a->left[i] -= root > 0 ? pull[i] / root : 0;
   }
 }
 
-/* The first lambda of all that is wanted, with what it leaves. */
-static dea_status begin(struct dea_context *ctx, struct dea_adjoint *a, size_t count)
+/* left . kappa left, what is left of the second equation; change: the largest kappa left. */
+static double size_of(const struct dea_adjoint *a, double change[KINDS])
 {
-  for (size_t k = 0; k < count; k++) {
-    memmove(a->right + k * a->dofs, dea_adjoint_slope(a, a->open[k]), a->dofs * sizeof(double));
+  double sum = 0;
+  change[OF_ELEMENTS] = change[OF_LOADS] = 0;
+  for (size_t i = 0; i < a->all; i++) {
+    double z = kappa_of(a, i) * a->left[i], *most = &change[kind_of(a, i)];
+    sum += a->left[i] * z;
+    *most = fmax(*most, fabs(z));
   }
-  DEA_TRY(ctx, solve(ctx, a, count, a->conjugate));
-  for (size_t k = 0; k < count; k++) {
-    const size_t n = a->open[k];
-    memset(a->nu + n * a->all, 0, a->all * sizeof(double));
-    a->before[n] = a->largest[n][OF_ELEMENTS] = a->largest[n][OF_LOADS] = 0;
-    memcpy(a->lambda + n * a->dofs, a->conjugate + k * a->dofs, a->dofs * sizeof(double));
-    squeeze(a, a->lambda + n * a->dofs, a->left + n * a->all);
-    get_pressures(a, n);
+  return sum;
+}
+
+/* One step of conjugate gradients along the direction, where left has that size. largest: of nu. */
+static void step(struct dea_adjoint *a, double size, double *lambda, double *nu,
+                 double largest[KINDS])
+{
+  double product = 0;
+  squeeze(a, a->conjugate, a->gain);
+  for (size_t i = 0; i < a->all; i++) {
+    product += a->towards[i] * a->gain[i];
   }
-  return DEA_OK;
+  const double length = product != 0 ? size / product : 0;
+  for (size_t i = 0; i < a->all; i++) {
+    double *most = &largest[kind_of(a, i)];
+    nu[i] += length * a->towards[i];
+    a->left[i] -= length * a->gain[i];
+    *most = fmax(*most, fabs(nu[i]));
+  }
+  for (size_t i = 0; i < a->dofs; i++) {
+    lambda[i] -= length * a->conjugate[i];
+  }
 }
 
 /* A takes its share of nu from K. */
-static void end(struct dea_adjoint *a, size_t number)
+static void end(struct dea_adjoint *a, const double *lambda, double *nu)
 {
-  double *nu = a->nu + number * a->all, *gain = a->gain;
-  squeeze(a, a->lambda + number * a->dofs, gain);
+  squeeze(a, lambda, a->gain);
   for (size_t i = 0; i < a->all; i++) {
-    nu[i] += kappa_of(a, i) * gain[i];
+    nu[i] += kappa_of(a, i) * a->gain[i];
   }
 }
 
-/* The next directions; returns how many answers are not there yet. */
-static size_t aim(struct dea_adjoint *a, size_t count)
+static dea_status solve_one(struct dea_context *ctx, struct dea_adjoint *a, size_t number)
 {
-  size_t open = 0;
-  for (size_t k = 0; k < count; k++) {
-    const size_t n = a->open[k];
-    double *towards = a->towards + n * a->all, change[KINDS];
-    const double *left = a->left + n * a->all, *largest = a->largest[n];
-    const double size = size_of(a, n, change);
+  double *right = dea_adjoint_slope(a, number), *lambda = a->lambda + number * a->dofs;
+  double *nu = a->nu + number * a->all, before = 0, largest[KINDS] = {0};
+  DEA_TRY(ctx, solve(ctx, a, right, lambda));
+  memset(nu, 0, a->all * sizeof *nu);
+  squeeze(a, lambda, a->left);
+  get_pressures(a, number);
+  for (int k = 0; k < STEPS; k++) {
+    double change[KINDS];
+    const double size = size_of(a, change);
     if (!(change[OF_ELEMENTS] > settled * largest[OF_ELEMENTS]) &&
         !(change[OF_LOADS] > settled * largest[OF_LOADS])) {
-      end(a, n);
-      continue;
+      end(a, lambda, nu);
+      return DEA_OK;
     }
     for (size_t i = 0; i < a->all; i++) {
-      towards[i] =
-          kappa_of(a, i) * left[i] + (a->before[n] != 0 ? size / a->before[n] : 0) * towards[i];
+      a->towards[i] =
+          kappa_of(a, i) * a->left[i] + (before != 0 ? size / before : 0) * a->towards[i];
     }
-    a->before[n] = size;
-    push(a, towards, a->right + open * a->dofs);
-    a->open[open++] = n;
+    before = size;
+    push(a, a->towards, right);
+    DEA_TRY(ctx, solve(ctx, a, right, a->conjugate));
+    step(a, size, lambda, nu, largest);
   }
-  return open;
-}
-
-/* One step of conjugate gradients of an answer along its direction; conjugate is its K^-1 b^T. */
-static void step(struct dea_adjoint *a, size_t number, const double *conjugate)
-{
-  double *towards = a->towards + number * a->all, *left = a->left + number * a->all,
-         *nu = a->nu + number * a->all, *lambda = a->lambda + number * a->dofs;
-  double product = 0;
-  squeeze(a, conjugate, a->gain);
-  for (size_t i = 0; i < a->all; i++) {
-    product += towards[i] * a->gain[i];
-  }
-  const double length = product != 0 ? a->before[number] / product : 0;
-  for (size_t i = 0; i < a->all; i++) {
-    double *largest = &a->largest[number][kind_of(a, i)];
-    nu[i] += length * towards[i];
-    left[i] -= length * a->gain[i];
-    *largest = fmax(*largest, fabs(nu[i]));
-  }
-  for (size_t i = 0; i < a->dofs; i++) {
-    lambda[i] -= length * conjugate[i];
-  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the pressures of a gradient do not settle");
 }
 
 double *dea_adjoint_slope(struct dea_adjoint *a, size_t number)
@@ -385,34 +284,20 @@ const double *dea_adjoint_answer(const struct dea_adjoint *a, size_t number)
 
 dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, const bool *wanted)
 {
-  size_t open = 0;
   for (size_t n = 0; n < a->count; n++) {
-    if (wanted[n]) {
-      a->open[open++] = n;
-    }
+    DEA_TRY(ctx, wanted[n] ? solve_one(ctx, a, n) : DEA_OK);
   }
-  DEA_TRY(ctx, begin(ctx, a, open));
-  for (int i = 0; i < STEPS && open > 0; i++) {
-    open = aim(a, open);
-    DEA_TRY(ctx, solve(ctx, a, open, a->conjugate));
-    for (size_t k = 0; k < open; k++) {
-      step(a, a->open[k], a->conjugate + k * a->dofs);
-    }
-  }
-  return open == 0
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the pressures of a gradient do not settle");
+  return DEA_OK;
 }
 
 double dea_adjoint_pair(struct dea_adjoint *a, size_t answer, size_t number)
 {
-  double *left = a->left + number * a->all; // 0 less L^-1 Q_p
   const double *nu = a->nu + answer * a->all;
   double sum = dea_solid_dot(a->s, dea_adjoint_answer(a, answer), dea_adjoint_slope(a, number));
-  memset(left, 0, a->all * sizeof *left);
+  memset(a->left, 0, a->all * sizeof *a->left); // less L^-1 Q_p
   get_pressures(a, number);
   for (size_t i = 0; i < a->all; i++) {
-    sum -= nu[i] * left[i];
+    sum -= nu[i] * a->left[i];
   }
   return sum;
 }
@@ -449,20 +334,14 @@ dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, 
                                 double *energy_J)
 {
   struct dea_solid *s = a->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = most_of(a);
   dea_solid_hold_potential(s, voltage_V, s->state.u);
-  dea_solid_drop_bulk_modulus(s);
-  dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, energy_J);
-  dea_solid_restore_dropped_bulk_modulus(s);
-  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, dea_solid_assemble_forces(ctx, s, voltage_V, energy_J));
   memset(a->theta, 0, a->all * sizeof *a->theta);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const double *L = a->L + k * most * most;
-    for (size_t m = 0; m < count; m++) {
-      for (size_t c = m; c < count; c++) { // L^T theta
-        a->theta[e * most + m] += L[c * count + m] * s->state.theta[e * most + c];
+  for (size_t k = 0; k < s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&a->constraints, k);
+    for (size_t m = 0; m < at.count; m++) {
+      for (size_t c = m; c < at.count; c++) { // L^T theta
+        a->theta[at.first + m] += at.L[c * at.count + m] * s->state.theta[at.first + c];
       }
     }
   }
@@ -483,21 +362,13 @@ double dea_adjoint_product(const struct dea_adjoint *a, size_t number)
 
 // Modes ------------------------------------------------------------------------------------------
 
-size_t dea_adjoint_multipliers(const struct dea_adjoint *a)
-{
-  return a->all;
-}
-
 void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, double *out)
 {
-  const struct dea_solid_problem *p = &a->s->problem;
-  size_t most = most_of(a);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
-    const double *L = a->L + k * most * most;
-    for (size_t m = 0; m < count; m++) {
+  for (size_t k = 0; k < a->s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&a->constraints, k);
+    for (size_t m = 0; m < at.count; m++) {
       for (size_t c = 0; c <= m; c++) {
-        out[e * most + m] += times * L[m * count + c] * a->theta[e * most + c];
+        out[at.first + m] += times * at.L[m * at.count + c] * a->theta[at.first + c];
       }
     }
   }
@@ -508,29 +379,7 @@ void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, doub
 
 void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, double *out)
 {
-  const struct dea_solid_problem *p = &a->s->problem;
-  size_t most = most_of(a);
-  double own[DEA_HEX_DOFS_MAX];
-  memset(out, 0, a->all * sizeof *out);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
-    const double *b = a->b + k * most * DEA_HEX_DOFS_MAX, *L = a->L + k * most * most;
-    const double kappa_Pa = DEA_SOLID_STIFF * dea_solid_bulk_modulus(a->s, e);
-    size_t dofs = 3 * (size_t)dea_solid_gather(a->s, e, v, own);
-    for (size_t m = count; m-- > 0 && L[0] > 0;) { // L^T out = kappa b v
-      double sum = 0;
-      for (size_t i = 0; i < dofs; i++) {
-        // dea_solid_gather has set it
-        // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
-        sum += kappa_Pa * b[m * dofs + i] * own[i];
-      }
-      for (size_t c = m + 1; c < count; c++) {
-        sum -= L[c * count + m] * out[e * most + c];
-      }
-      out[e * most + m] = sum / L[m * count + m];
-    }
-  }
-  dea_solid_sum(out, a->pressures);
+  dea_constraints_pressures(&a->constraints, v, out);
   for (size_t i = a->pressures; i < a->all; i++) {
     const struct row *row = &a->row[i - a->pressures];
     out[i] = row->root > 0 ? row->stiffness / row->root * row_times(row, v) : 0;

@@ -40,11 +40,8 @@ dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *adj
                                 double voltage_V, double *energy_J);
 /* lambda . R + mu . C of the last assembly. */
 double dea_adjoint_product(const struct dea_adjoint *adjoint, size_t number);
-/* How many multipliers there are: [elements][pressures], then those of each load, as in a state of
- * the solid. */
-size_t dea_adjoint_multipliers(const struct dea_adjoint *adjoint);
 /* The constraints C of the last assembly of the problem that the answers are of, added `times`
- * times to out [multipliers]. */
+ * times to out [multipliers of the solid]. */
 void dea_adjoint_add_constraints(const struct dea_adjoint *adjoint, double times, double *out);
 /* Multipliers with which the solid as good as incompressible and the penalties of what is held
  * answer a motion v, out [multipliers]: kappa M^-1 B^T v. */

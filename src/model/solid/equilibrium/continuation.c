@@ -39,11 +39,7 @@ enum { MAX_OFFSETS = 4 };                   // attempts, each twice as far from 
 /* An equilibrium on the path. */
 struct dea_continuation_path_point {
   double *state; // [state_count]
-  double load;   // tau
-  double slope;  // d tau/d s
-  double arc;    // s from the start
-  double energy_J;
-  int modes;
+  struct dea_continuation_point point;
 };
 
 /* A plane in the space of displacements and load, which a point is looked for in:
@@ -67,6 +63,7 @@ struct dea_solid_continuation {
   double *tangent, tangent_load; // of the path at last; [dofs]
   struct dea_continuation_plane plane;
   double *rate, *right, *start, *mode; // [dofs] each: work; mode: critical one, unit size
+  double *span, *bulge;                // [state_count] work
   double step, step_most, step_least;
   bool rough;                        // points on the way need not be exact
   bool arc;                          // its last two points make a parabola, which is followed
@@ -124,7 +121,7 @@ static void lay_plane(struct dea_solid_continuation *t, double load,
 {
   t->plane.load = load;
   t->plane.u0 = from->state;
-  t->plane.tau0 = from->load;
+  t->plane.tau0 = from->point.load;
   t->plane.length = length;
   t->plane.enough = enough;
 }
@@ -197,10 +194,7 @@ static dea_status bordered_step(struct dea_context *ctx, struct dea_solid_contin
   const struct dea_continuation_plane *plane = &t->plane;
   double off = off_plane(t), along = plane->load;
   DEA_TRY(ctx, displacement_rate(ctx, t));
-  for (size_t i = 0; i < p->dofs; i++) {
-    s->work.trial[i] = -s->work.g[i];
-  }
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+  DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
   for (size_t i = 0; i < p->dofs; i++) {
     off += plane->weight[i] * s->work.step[i];
     along += plane->weight[i] * t->rate[i];
@@ -245,8 +239,7 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   double dtau = 0, most = 0, before = *residual;
   int negative;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &t->energy_J));
-  *residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g)) /
-              (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+  *residual = dea_solid_residual(s);
   bool constrained = dea_solid_theta_max(s) < theta_share * o->volume_tol;
   *there = isfinite(before) && constrained && *residual < o->arc_rtol &&
            fabs(off_plane(t)) < plane_rtol * fabs(t->plane.length);
@@ -254,7 +247,7 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
     return DEA_OK;
   }
   DEA_TRY(ctx, force_rate(ctx, t));
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, DEA_FACTOR_EXACT, &negative));
   DEA_TRY(ctx, bordered_step(ctx, t, &dtau));
   *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->work.g, s->work.step));
   double fraction = share_with_energy(s);
@@ -301,9 +294,9 @@ static dea_status correct(struct dea_context *ctx, struct dea_solid_continuation
 static dea_status solve_in_plane(struct dea_context *ctx, struct dea_solid_continuation *t,
                                  int *iterations)
 {
-  dea_solid_scale_bulk_modulus(t->s, bulk_factor);
+  t->s->state.bulk_factor *= bulk_factor;
   dea_status status = correct(ctx, t, iterations);
-  dea_solid_scale_bulk_modulus(t->s, 1 / bulk_factor);
+  t->s->state.bulk_factor /= bulk_factor;
   t->s->found.predicted_fits = false;
   return status;
 }
@@ -317,13 +310,13 @@ static dea_status find_rate(struct dea_context *ctx, struct dea_solid_continuati
   s->found.predicted_fits = s->found.factor_fits = false;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &t->energy_J));
   dea_solid_keep_scales(s);
-  dea_solid_raise_bulk_modulus(s);
+  dea_solid_change_bulk_modulus(s, DEA_SOLID_STIFF);
   double energy;
   dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
   status = status == DEA_OK ? force_rate(ctx, t) : status;
-  dea_solid_restore_bulk_modulus(s);
+  dea_solid_change_bulk_modulus(s, 1.0 / DEA_SOLID_STIFF);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, modes));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, DEA_FACTOR_EXACT, modes));
   return DEA_CHAIN(ctx, displacement_rate(ctx, t));
 }
 
@@ -335,18 +328,19 @@ static dea_status record_point(struct dea_context *ctx, struct dea_solid_continu
 {
   struct dea_solid *s = t->s;
   double product = along_load;
-  DEA_TRY(ctx, find_rate(ctx, t, &place->modes));
+  DEA_TRY(ctx, find_rate(ctx, t, &place->point.unstable_modes));
   for (size_t i = 0; i < s->problem.dofs; i++) {
     product += t->metric[i] * along[i] * t->rate[i];
   }
-  place->slope = copysign(1 / hypot(size_of(t, t->rate), 1), product);
-  place->load = t->load;
-  place->energy_J = t->energy_J;
+  place->point.slope = copysign(1 / hypot(size_of(t, t->rate), 1), product);
+  place->point.load = t->load;
+  place->point.voltage_V = s->state.voltage_V;
+  place->point.energy_J = t->energy_J;
   dea_solid_state_get(s, place->state);
   for (size_t i = 0; i < s->problem.dofs && tangent; i++) {
-    t->tangent[i] = place->slope * t->rate[i];
+    t->tangent[i] = place->point.slope * t->rate[i];
   }
-  t->tangent_load = tangent ? place->slope : t->tangent_load;
+  t->tangent_load = tangent ? place->point.slope : t->tangent_load;
   return DEA_OK;
 }
 
@@ -356,7 +350,7 @@ static dea_status return_to(struct dea_context *ctx, struct dea_solid_continuati
 {
   dea_solid_state_set(t->s, place->state);
   dea_solid_forget(t->s);
-  return DEA_CHAIN(ctx, set_load(ctx, t, place->load));
+  return DEA_CHAIN(ctx, set_load(ctx, t, place->point.load));
 }
 
 /* From an equilibrium by du [dofs] and dtau, pressures and predicted stresses along. */
@@ -367,27 +361,14 @@ static dea_status predict_from(struct dea_context *ctx, struct dea_solid_continu
   double energy;
   s->found.predicted_fits = false;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy)); // for theta
-  dea_solid_raise_bulk_modulus(s);
+  dea_solid_change_bulk_modulus(s, DEA_SOLID_STIFF);
   dea_status status = dea_solid_predict(ctx, s, s->state.voltage_V, du, 1, true, true);
-  dea_solid_restore_bulk_modulus_at_pressure(s); // the multipliers are those of the end of the step
+  s->state.bulk_factor /= DEA_SOLID_STIFF; // the multipliers are those of the end of the step
   DEA_TRY(ctx, status);
   for (size_t i = 0; i < s->problem.dofs; i++) {
     s->state.u[i] += du[i];
   }
   return DEA_CHAIN(ctx, set_load(ctx, t, t->load + dtau));
-}
-
-static void report_point(const struct dea_solid_continuation *t,
-                         const struct dea_continuation_path_point *place,
-                         enum dea_continuation_event event, struct dea_continuation_point *out)
-{
-  *out = (struct dea_continuation_point){.load = place->load,
-                                         .voltage_V = t->s->state.voltage_V,
-                                         .slope = place->slope,
-                                         .arc = place->arc,
-                                         .energy_J = place->energy_J,
-                                         .unstable_modes = place->modes,
-                                         .passed = event};
 }
 
 /* ---- steps along the tangent ---- */
@@ -403,21 +384,12 @@ static double distance_from(struct dea_solid_continuation *t, const double *pred
   return sqrt(sum);
 }
 
-static enum dea_continuation_event event_between(const struct dea_continuation_path_point *a,
-                                                 const struct dea_continuation_path_point *b)
-{
-  if (a->slope * b->slope < 0) {
-    return DEA_CONTINUATION_LIMIT;
-  }
-  return a->modes != b->modes ? DEA_CONTINUATION_BIFURCATION : DEA_CONTINUATION_NOTHING;
-}
-
 /* How far the tangent at t->next is from that of the circle through both points with the tangent at
  * t->last: 0 for an arc, twice the distance from the prediction for a parallel path. t->rate
  * belongs to t->next. */
 static double bend(const struct dea_solid_continuation *t)
 {
-  double chord_load = t->next.load - t->last.load, size = chord_load * chord_load;
+  double chord_load = t->next.point.load - t->last.point.load, size = chord_load * chord_load;
   double tangents = t->tangent_load, first = chord_load * t->tangent_load, second = chord_load;
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
     double chord = t->next.state[i] - t->last.state[i];
@@ -426,7 +398,8 @@ static double bend(const struct dea_solid_continuation *t)
     second += t->metric[i] * chord * t->rate[i];
     tangents += t->metric[i] * t->tangent[i] * t->rate[i];
   }
-  double square = 2 + 2 * t->next.slope * tangents - 4 * first * t->next.slope * second / size;
+  double square =
+      2 + 2 * t->next.point.slope * tangents - 4 * first * t->next.point.slope * second / size;
   return sqrt(fmax(square, 0));
 }
 
@@ -435,12 +408,12 @@ static double bend(const struct dea_solid_continuation *t)
  * tangent and x = step / h. *load: of tau. */
 static double curve(const struct dea_solid_continuation *t, double *h, double *load)
 {
-  *h = (t->last.load - t->before.load) * t->tangent_load;
+  *h = (t->last.point.load - t->before.point.load) * t->tangent_load;
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
     *h += t->metric[i] * (t->last.state[i] - t->before.state[i]) * t->tangent[i];
   }
   double x = t->step / *h, square;
-  *load = x * x * (t->before.load - t->last.load + *h * t->tangent_load);
+  *load = x * x * (t->before.point.load - t->last.point.load + *h * t->tangent_load);
   square = *load * *load;
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
     double parabola = x * x * (t->before.state[i] - t->last.state[i] + *h * t->tangent[i]);
@@ -489,7 +462,7 @@ static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continu
   DEA_TRY(ctx, solve_in_plane(ctx, t, iterations));
   *off = distance_from(t, t->start, tau) / t->step;
   if (*off < max_off) {
-    t->next.arc = t->last.arc + t->step;
+    t->next.point.arc = t->last.point.arc + t->step;
     DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, &t->next));
     if (bend(t) < fmax(*off, min_bend)) {
       return DEA_OK;
@@ -506,10 +479,13 @@ static void accept_point(struct dea_solid_continuation *t)
   t->last = t->next;
   t->next = old;
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
-    t->tangent[i] = t->last.slope * t->rate[i];
+    t->tangent[i] = t->last.point.slope * t->rate[i];
   }
-  t->tangent_load = t->last.slope;
-  t->event = event_between(&t->before, &t->last);
+  t->tangent_load = t->last.point.slope;
+  t->event = t->before.point.slope * t->last.point.slope < 0 ? DEA_CONTINUATION_LIMIT
+             : t->before.point.unstable_modes != t->last.point.unstable_modes
+                 ? DEA_CONTINUATION_BIFURCATION
+                 : DEA_CONTINUATION_NOTHING;
   t->arc = t->rough;
 }
 
@@ -538,10 +514,11 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
     dea_context_clear(ctx);
     DEA_TRY(ctx, return_to(ctx, t, &t->last));
     return dea_fail(ctx, status, "the path cannot be followed beyond a load of %.6g (%s)",
-                    t->last.load, why);
+                    t->last.point.load, why);
   }
   accept_point(t);
-  report_point(t, &t->last, t->event, point);
+  *point = t->last.point;
+  point->passed = t->event;
   point->iterations = all;
   double longer = off > 0 ? fmin(sqrt(aimed_off / off), 2) : 2;
   longer = iterations > MANY_ITERATIONS ? fmin(longer, 0.7) : longer;
@@ -549,32 +526,49 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   return DEA_OK;
 }
 
-/* The equilibrium in the plane that is set, at a fraction of the distance between the last two
- * points. */
+/* Beside the way from the point before to the last one: bulge x (x - 1) at a fraction x. */
+struct bulge {
+  double *state; // [state_count]
+  double load;
+};
+
+/* The equilibrium in the plane that is set, from the guess at a fraction of that way. bulge: NULL
+ * on it. */
 static dea_status solve_between(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                double fraction, struct dea_continuation_point *point)
+                                double fraction, const struct bulge *bulge)
 {
-  struct dea_continuation_path_point *at = &t->critical;
+  const struct dea_continuation_path_point *from = &t->before, *to = &t->last;
+  const double parabola = fraction * (fraction - 1);
   int iterations;
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
-    at->state[i] = t->before.state[i] + fraction * (t->last.state[i] - t->before.state[i]);
+    t->critical.state[i] = from->state[i] + fraction * (to->state[i] - from->state[i]) +
+                           (bulge != NULL ? parabola * bulge->state[i] : 0);
   }
-  at->load = t->before.load + fraction * (t->last.load - t->before.load);
-  at->arc = t->before.arc + fraction * (t->last.arc - t->before.arc);
-  DEA_TRY(ctx, return_to(ctx, t, at));
-  DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
-  DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, at));
-  report_point(t, at, DEA_CONTINUATION_NOTHING, point);
+  t->critical.point.load = from->point.load + fraction * (to->point.load - from->point.load) +
+                           (bulge != NULL ? parabola * bulge->load : 0);
+  DEA_TRY(ctx, return_to(ctx, t, &t->critical));
+  return DEA_CHAIN(ctx, solve_in_plane(ctx, t, &iterations));
+}
+
+/* The same, and what is known of it. */
+static dea_status find_between(struct dea_context *ctx, struct dea_solid_continuation *t,
+                               double fraction, struct dea_continuation_point *point)
+{
+  const double from = t->before.point.arc, to = t->last.point.arc;
+  DEA_TRY(ctx, solve_between(ctx, t, fraction, NULL));
+  t->critical.point.arc = from + fraction * (to - from);
+  DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, &t->critical));
+  *point = t->critical.point;
   return DEA_OK;
 }
 
 dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_continuation *t,
                                      double load, struct dea_continuation_point *point)
 {
-  const double span = load - t->before.load;
+  const double from = t->before.point.load, span = load - from;
   memset(t->start, 0, t->s->problem.dofs * sizeof *t->start);
   set_plane(t, t->start, 1, &t->before, span, 0);
-  return DEA_CHAIN(ctx, solve_between(ctx, t, span / (t->last.load - t->before.load), point));
+  return DEA_CHAIN(ctx, find_between(ctx, t, span / (t->last.point.load - from), point));
 }
 
 dea_status dea_solid_continuation_across(struct dea_context *ctx, struct dea_solid_continuation *t,
@@ -588,7 +582,7 @@ dea_status dea_solid_continuation_across(struct dea_context *ctx, struct dea_sol
   }
   memcpy(t->plane.weight, weight, t->s->problem.dofs * sizeof *weight);
   lay_plane(t, 0, &t->before, value - from, 0);
-  return DEA_CHAIN(ctx, solve_between(ctx, t, (value - from) / (to - from), point));
+  return DEA_CHAIN(ctx, find_between(ctx, t, (value - from) / (to - from), point));
 }
 
 /* ---- creation ---- */
@@ -599,22 +593,15 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
                                 struct dea_solid_continuation *t)
 {
   const struct dea_solid_problem *p = &s->problem;
-  size_t controls = s->work.load_steps.control_count, states = s->work.load_steps.state_count;
-  double **const of_dofs[] = {&t->metric, &t->held_rate, &t->tangent, &t->plane.weight,
-                              &t->rate,   &t->right,     &t->start,   &t->mode};
-  double **const of_controls[] = {&t->from, &t->goal, &t->now};
-  double **const of_states[] = {&t->before.state, &t->last.state, &t->critical.state,
-                                &t->next.state};
   t->memory.ctx = ctx;
-  for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
-    *of_dofs[i] = dea_arena_alloc(&t->memory, s->problem.dofs, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof of_controls / sizeof of_controls[0]; i++) {
-    *of_controls[i] = dea_arena_alloc(&t->memory, controls, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof of_states / sizeof of_states[0]; i++) {
-    *of_states[i] = dea_arena_alloc(&t->memory, states, sizeof(double));
-  }
+  dea_solid_alloc_doubles(&t->memory, p->dofs,
+                          (double **[]){&t->metric, &t->held_rate, &t->tangent, &t->plane.weight,
+                                        &t->rate, &t->right, &t->start, &t->mode, NULL});
+  dea_solid_alloc_doubles(&t->memory, s->work.load_steps.control_count,
+                          (double **[]){&t->from, &t->goal, &t->now, NULL});
+  dea_solid_alloc_doubles(&t->memory, s->work.load_steps.state_count,
+                          (double **[]){&t->before.state, &t->last.state, &t->critical.state,
+                                        &t->next.state, &t->span, &t->bulge, NULL});
   DEA_TRY_MEMORY(!dea_solid_allreduce_any(t->memory.failed));
   double volume = 0;
   dea_solid_lump_volume(s, t->metric);
@@ -692,12 +679,9 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
     return dea_fail(ctx, DEA_E_ARGUMENT, "a path takes a step and a unit of displacement");
   }
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
-  double *goal = dea_solid_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
-  DEA_TRY_MEMORY(goal != NULL);
+  double *goal = s->work.load_steps.controls_goal;
   dea_solid_controls_goal(s, voltage_V, goal);
-  dea_status status = dea_continuation_create_to(ctx, s, goal, options, out);
-  dea_free(ctx, goal);
-  return status;
+  return DEA_CHAIN(ctx, dea_continuation_create_to(ctx, s, goal, options, out));
 }
 
 void dea_solid_continuation_destroy(struct dea_context *ctx, struct dea_solid_continuation *t)
@@ -710,12 +694,12 @@ void dea_solid_continuation_destroy(struct dea_context *ctx, struct dea_solid_co
 
 /* ---- limit points and bifurcations ---- */
 
-/* Between two places: where, what is to be 0 there, and the direction from one to the other. */
+/* Between the point before and the last one: the direction from one to the other, fractions of it
+ * that bracket the critical point, and what is to be 0 there. */
 struct bracket {
-  const struct dea_continuation_path_point *from;
-  double *span;  // [state_count]
-  double *bulge; // [state_count] at a fraction x the guess is span x + bulge x (x - 1)
-  double span_load, bulge_load, length, at[2], value[2];
+  double *span; // [state_count]
+  struct bulge bulge;
+  double span_load, length, at[2], value[2];
   size_t mode; // of a bifurcation: the place of the critical one among all
 };
 
@@ -725,7 +709,7 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
 {
   struct dea_solid *s = t->s;
   DEA_TRY(ctx, record_point(ctx, t, b->span, b->span_load, false, &t->critical));
-  *value = t->critical.slope;
+  *value = t->critical.point.slope;
   if (t->event == DEA_CONTINUATION_LIMIT) {
     return DEA_OK;
   }
@@ -748,40 +732,31 @@ static void bow_by_tangent(const struct dea_solid_continuation *t, struct bracke
     along += t->metric[i] * t->tangent[i] * b->span[i];
   }
   const double whole = b->length * b->length / along;
-  memset(b->bulge, 0, t->s->work.load_steps.state_count * sizeof *b->bulge);
+  memset(b->bulge.state, 0, t->s->work.load_steps.state_count * sizeof *b->bulge.state);
   for (size_t i = 0; i < t->s->problem.dofs && along > 0; i++) {
-    b->bulge[i] = whole * t->tangent[i] - b->span[i];
+    b->bulge.state[i] = whole * t->tangent[i] - b->span[i];
   }
-  b->bulge_load = along > 0 ? whole * t->tangent_load - b->span_load : 0;
+  b->bulge.load = along > 0 ? whole * t->tangent_load - b->span_load : 0;
 }
 
 /* The bulge of that through the point which was found at a fraction of the span. */
 static void bow_by_point(const struct dea_solid_continuation *t, struct bracket *b, double fraction)
 {
-  const struct dea_continuation_path_point *at = &t->critical;
+  const struct dea_continuation_path_point *at = &t->critical, *from = &t->before;
+  const double parabola = fraction * (fraction - 1);
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
-    b->bulge[i] =
-        (at->state[i] - b->from->state[i] - fraction * b->span[i]) / (fraction * (fraction - 1));
+    b->bulge.state[i] = (at->state[i] - from->state[i] - fraction * b->span[i]) / parabola;
   }
-  b->bulge_load =
-      (at->load - b->from->load - fraction * b->span_load) / (fraction * (fraction - 1));
+  b->bulge.load = (at->point.load - from->point.load - fraction * b->span_load) / parabola;
 }
 
 /* The equilibrium at a fraction of the span. */
 static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid_continuation *t,
                                  const struct bracket *b, double fraction)
 {
-  int iterations;
-  const double parabola = fraction * (fraction - 1);
-  for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
-    t->critical.state[i] = b->from->state[i] + fraction * b->span[i] + parabola * b->bulge[i];
-  }
-  t->critical.load = b->from->load + fraction * b->span_load + parabola * b->bulge_load;
-  DEA_TRY(ctx, return_to(ctx, t, &t->critical));
-  set_plane(t, b->span, b->span_load, b->from, fraction * b->length, 0);
-  DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
-  t->critical.arc = b->from->arc + fraction * b->length;
-  return DEA_OK;
+  set_plane(t, b->span, b->span_load, &t->before, fraction * b->length, 0);
+  t->critical.point.arc = t->before.point.arc + fraction * b->length;
+  return DEA_CHAIN(ctx, solve_between(ctx, t, fraction, &b->bulge));
 }
 
 /* The same beside the fraction where there is none at it: where a mode other than the path's loses
@@ -843,20 +818,20 @@ static dea_status locate_between(struct dea_context *ctx, struct dea_solid_conti
                                  struct bracket *b)
 {
   const struct dea_continuation_path_point *ends[2] = {&t->before, &t->last};
-  b->from = ends[0];
+  const int modes[2] = {t->before.point.unstable_modes, t->last.point.unstable_modes};
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
     b->span[i] = ends[1]->state[i] - ends[0]->state[i];
   }
-  b->span_load = ends[1]->load - ends[0]->load;
+  b->span_load = ends[1]->point.load - ends[0]->point.load;
   b->length = hypot(size_of(t, b->span), b->span_load);
   bow_by_tangent(t, b);
   b->at[1] = 1;
-  b->mode = (size_t)(ends[0]->modes < ends[1]->modes ? ends[0]->modes : ends[1]->modes);
+  b->mode = (size_t)(modes[0] < modes[1] ? modes[0] : modes[1]);
   if (t->event == DEA_CONTINUATION_BIFURCATION && b->mode >= DEA_MODES_MAX) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "%zu modes are unstable already", b->mode);
   }
   for (int k = 0; k < 2; k++) {
-    b->value[k] = ends[k]->slope;
+    b->value[k] = ends[k]->point.slope;
     if (t->event == DEA_CONTINUATION_BIFURCATION) {
       DEA_TRY(ctx, return_to(ctx, t, ends[k]));
       DEA_TRY(ctx, measure_critical(ctx, t, b, &b->value[k]));
@@ -871,24 +846,18 @@ static dea_status locate_between(struct dea_context *ctx, struct dea_solid_conti
 dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_solid_continuation *t,
                                          struct dea_continuation_point *point)
 {
-  struct bracket b = {0};
+  struct bracket b = {.span = t->span, .bulge.state = t->bulge};
   if (t->event == DEA_CONTINUATION_NOTHING) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the last step has passed no critical point");
   }
-  const size_t states = t->s->work.load_steps.state_count;
-  b.span = dea_solid_alloc(ctx, 2 * states, sizeof *b.span);
-  dea_status status = b.span != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    b.bulge = b.span + states;
-    status = locate_between(ctx, t, &b);
-  }
-  dea_free(ctx, b.span);
+  dea_status status = locate_between(ctx, t, &b);
   if (status != DEA_OK) {
     dea_solid_state_set(t->s, t->last.state);
     dea_solid_forget(t->s);
-    set_controls(NULL, t, t->last.load); // where it was
+    set_controls(NULL, t, t->last.point.load); // where it was
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  report_point(t, &t->critical, t->event, point);
+  *point = t->critical.point;
+  point->passed = t->event;
   return DEA_OK;
 }

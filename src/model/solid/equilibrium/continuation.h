@@ -25,10 +25,10 @@ enum dea_continuation_event {
 };
 
 struct dea_continuation_point {
-  double load; // tau
-  double voltage_V;
+  double load;  // tau
   double slope; // d tau/d s: 0 at a limit point
   double arc;   // s from the start
+  double voltage_V;
   double energy_J;
   int unstable_modes;
   enum dea_continuation_event

@@ -91,22 +91,20 @@ static dea_status descend_from(struct dea_context *ctx, struct dea_solid *s, int
                                struct dea_solid_report *report)
 {
   const struct dea_solid_report before = *report;
-  double *mode = dea_alloc(ctx, 3 * s->problem.grid->node_count, sizeof *mode);
-  double *state = dea_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
-  dea_status status =
-      dea_solid_allreduce(ctx, mode != NULL && state != NULL ? DEA_OK : DEA_E_MEMORY);
+  struct dea_solid_saved_state from;
+  double *mode = dea_solid_alloc(ctx, 3 * s->problem.grid->node_count, sizeof *mode);
+  DEA_TRY_MEMORY(mode != NULL);
+  dea_status status = dea_solid_save_state(ctx, s, &from);
   if (status == DEA_OK) {
-    dea_solid_state_get(s, state);
     status = descend(ctx, s, side, mode, report);
     report->snapped |= status == DEA_OK;
+    if (status != DEA_OK) {
+      dea_solid_restore_state(s, &from);
+      *report = before;
+    }
   }
-  if (status != DEA_OK && state != NULL && mode != NULL) {
-    dea_solid_state_set(s, state);
-    dea_solid_forget(s);
-    *report = before;
-  }
+  dea_solid_saved_state_free(&from);
   dea_free(ctx, mode);
-  dea_free(ctx, state);
   return status;
 }
 
@@ -114,7 +112,6 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
                                       struct dea_solid_report *report)
 {
   *report = (struct dea_solid_report){.load_factor = 1};
-  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
   return DEA_CHAIN(ctx, report->unstable_modes > 0 ? descend_from(ctx, s, side, report) : DEA_OK);
 }
@@ -150,12 +147,10 @@ dea_status dea_solid_perturb(struct dea_context *ctx, struct dea_solid *s, const
                              bool (*accept)(const void *self, const double *displacement_m),
                              const void *self, struct dea_solid_report *report, bool *found)
 {
-  struct dea_solid_report before = *report;
+  const struct dea_solid_report before = *report;
+  struct dea_solid_saved_state from;
   *found = false;
-  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
-  double *state = dea_solid_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
-  DEA_TRY_MEMORY(state != NULL);
-  dea_solid_state_get(s, state);
+  DEA_TRY_ELSE(ctx, dea_solid_save_state(ctx, s, &from), dea_solid_saved_state_free(&from));
   dea_status status = solve_pushed(ctx, s, push_m, report);
   if (status == DEA_OK && report->unstable_modes > 0 && accept == NULL) {
     status = descend_if_possible(ctx, s, report);
@@ -163,21 +158,14 @@ dea_status dea_solid_perturb(struct dea_context *ctx, struct dea_solid *s, const
   *found = status == DEA_OK && report->unstable_modes == 0 &&
            (accept == NULL || accept(self, s->state.u));
   if (!*found) {
-    dea_solid_state_set(s, state);
+    dea_solid_restore_state(s, &from);
     *report = before;
-    dea_solid_forget(s);
   }
-  status = dea_solid_excuse(ctx, status);
-  dea_free(ctx, state);
-  return status;
+  dea_solid_saved_state_free(&from);
+  return dea_solid_excuse(ctx, status);
 }
 
 /* ---- to the next voltage and loads ---- */
-
-void dea_solid_accept_unstable(struct dea_solid *solid, bool stay)
-{
-  solid->settings.accept_unstable = stay;
-}
 
 /* path->at: the controls at a load factor, from 0 at the start to 1 at the goal, to the solid. */
 static void set_load_factor(struct dea_solid *s, double load_factor)
@@ -353,14 +341,13 @@ static bool wrinkles(const struct dea_solid *s, size_t e)
   static const double none = 1e-12; // of the modulus
   const struct dea_element *element = dea_solid_element(s, e);
   const struct dea_part_material *film = dea_solid_part_material(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
+  struct dea_solid_element_input at;
   struct dea_membrane_state state;
   if (!film->relaxed) {
     return false;
   }
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  bool any = element->type->membrane_state(element, &in, &state) != DEA_OK;
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &at);
+  bool any = element->type->membrane_state(element, &at.in, &state) != DEA_OK;
   for (int p = 0; !any && p < state.count; p++) {
     any = state.tension[p] <= none * dea_part_material_modulus(film) * film->thickness_m;
   }

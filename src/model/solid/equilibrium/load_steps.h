@@ -36,6 +36,3 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
 dea_status dea_solid_perturb(struct dea_context *ctx, struct dea_solid *solid, const double *push_m,
                              bool (*accept)(const void *self, const double *displacement_m),
                              const void *self, struct dea_solid_report *report, bool *found);
-
-/* Whether solves stay at an unstable equilibrium that they have found; at first they leave it. */
-void dea_solid_accept_unstable(struct dea_solid *solid, bool stay);

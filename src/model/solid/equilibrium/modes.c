@@ -1,6 +1,5 @@
 #include "model/solid/equilibrium/modes.h"
 
-#include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/curvature.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/mass.h"
@@ -130,7 +129,7 @@ static dea_status count_below(struct dea_context *ctx, struct eigen *f, double v
 {
   struct dea_solid *s = f->solid;
   DEA_TRY(ctx, dea_solid_add_matrix(ctx, s->work.K, -value, f->B));
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, count));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, DEA_FACTOR_EXACT, count));
   return DEA_CHAIN(ctx, dea_solid_add_matrix(ctx, s->work.K, value, f->B));
 }
 
@@ -177,7 +176,8 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
     if (f->count == before) {
       break;
     }
-    DEA_TRY(ctx, !below ? dea_solid_factor_any(ctx, f->solid) : DEA_OK);
+    int negative;
+    DEA_TRY(ctx, !below ? dea_solid_factorise(ctx, f->solid, DEA_FACTOR_EXACT, &negative) : DEA_OK);
     wanted = below ? count - f->count : MAX_EXTRA + count / 2;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "only %d modes were found, and not all up to the %d-th",
@@ -187,31 +187,12 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
 static dea_status create_metric(struct dea_context *ctx, struct dea_solid *s,
                                 enum dea_mode_metric metric, Mat *B)
 {
-  const struct dea_solid_problem *p = &s->problem;
-  if (metric == DEA_MODES_BY_MASS) {
-    return dea_solid_create_mass(ctx, s, B);
-  }
-  PetscScalar *rows;
-  DEA_PETSC(ctx, MatDuplicate(s->work.K, MAT_DO_NOT_COPY_VALUES, B));
-  dea_solid_lump_volume(s, s->work.trial);
-  DEA_PETSC(ctx, VecGetArray(s->work.right, &rows));
-  for (size_t n = p->first_node, k = 0; n < p->end_node; n++) {
-    for (int i = 0; i < p->per_node; i++) { // the same in local axes as in global ones
-      size_t at = dea_solid_at(s, (int)n, i);
-      rows[k++] = p->held[at] ? 0 : s->work.trial[at];
-    }
-  }
-  DEA_PETSC(ctx, VecRestoreArray(s->work.right, &rows));
-  DEA_PETSC(ctx, MatDiagonalSet(*B, s->work.right, INSERT_VALUES));
-  if (p->body_count > 0) {
-    DEA_PETSC(ctx, MatSetOption(*B, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
-    DEA_TRY(ctx, dea_solid_bodies_add_diagonal(ctx, s, *B, 1, s->work.trial, 3));
-    DEA_TRY(ctx, dea_solid_end_matrix(ctx, *B));
-  }
-  return DEA_OK;
+  return metric == DEA_MODES_BY_MASS ? dea_solid_create_mass(ctx, s, B)
+                                     : dea_solid_create_volume(ctx, s, B);
 }
 
-void dea_mode_orient(size_t count, double *v)
+/* The sign of a mode [count] so that its largest component is positive. */
+static void orient(size_t count, double *v)
 {
   double most = 0;
   for (size_t i = 0; i < count; i++) {
@@ -255,7 +236,7 @@ static dea_status hand_over(struct dea_context *ctx, const struct eigen *f, size
     if (vector != NULL) {
       DEA_TRY(ctx, dea_solid_from_vector(ctx, s, f->vectors[f->order[k]], s->work.trial));
       memcpy(vector + k * dofs, s->work.trial, dofs * sizeof *vector);
-      dea_mode_orient(dofs, vector + k * dofs);
+      orient(dofs, vector + k * dofs);
     }
   }
   return DEA_OK;
@@ -286,9 +267,10 @@ static void release(struct eigen *f)
   f->solid->found.factor_fits = f->solid->found.predicted_fits = false;
 }
 
+/* one: of more unstable modes than can be found any one does. */
 static dea_status find_lowest(struct dea_context *ctx, struct dea_solid *s,
-                              enum dea_mode_metric metric, size_t count, size_t dofs, double *value,
-                              double *vector)
+                              enum dea_mode_metric metric, size_t count, bool one, size_t dofs,
+                              double *value, double *vector)
 {
   struct eigen f = {.solid = s};
   int negative = 0;
@@ -297,10 +279,11 @@ static dea_status find_lowest(struct dea_context *ctx, struct dea_solid *s,
   }
   DEA_TRY(ctx, dea_solid_check(ctx, s));
   DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
-  if (negative > DEA_MODES_MAX) {
+  if (negative > DEA_MODES_MAX && !one) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "%d modes are unstable: too many to find each",
                     negative);
   }
+  negative = negative > DEA_MODES_MAX ? 1 : negative;
   dea_status status = find_modes(ctx, &f, metric, negative, (int)count);
   status = status == DEA_OK && metric == DEA_MODES_BY_MASS ? refine(ctx, &f, count) : status;
   status = status == DEA_OK ? hand_over(ctx, &f, count, dofs, value, vector) : status;
@@ -313,28 +296,21 @@ dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *s,
                                   double *vector)
 {
   const size_t moves = 3 * s->problem.grid->node_count;
-  return DEA_CHAIN(ctx, find_lowest(ctx, s, metric, count, moves, value, vector));
+  return DEA_CHAIN(ctx, find_lowest(ctx, s, metric, count, false, moves, value, vector));
 }
 
 dea_status dea_solid_modes_whole(struct dea_context *ctx, struct dea_solid *s,
                                  enum dea_mode_metric metric, size_t count, double *value,
                                  double *vector)
 {
-  return DEA_CHAIN(ctx, find_lowest(ctx, s, metric, count, s->problem.dofs, value, vector));
+  return DEA_CHAIN(ctx, find_lowest(ctx, s, metric, count, false, s->problem.dofs, value, vector));
 }
 
 dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *value,
                                    double *vector)
 {
-  struct eigen f = {.solid = s};
-  int negative;
-  DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
-  int wanted = negative < 1 || negative > DEA_MODES_MAX ? 1 : negative;
-  dea_status status = find_modes(ctx, &f, DEA_MODES_BY_VOLUME, wanted, 1);
-  status = status == DEA_OK ? hand_over(ctx, &f, 1, 3 * s->problem.grid->node_count, value, vector)
-                            : status;
-  release(&f);
-  return DEA_CHAIN(ctx, status);
+  const size_t moves = 3 * s->problem.grid->node_count;
+  return DEA_CHAIN(ctx, find_lowest(ctx, s, DEA_MODES_BY_VOLUME, 1, true, moves, value, vector));
 }
 
 dea_status dea_solid_modes_below(struct dea_context *ctx, struct dea_solid *s,

@@ -32,5 +32,3 @@ dea_status dea_solid_modes_below(struct dea_context *ctx, struct dea_solid *soli
  * DEA_MODES_MAX are. */
 dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *solid, double *value,
                                    double *vector);
-/* A mode v [count] with its sign so that its largest component is positive. */
-void dea_mode_orient(size_t count, double *v);

@@ -2,8 +2,8 @@
 
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/bodies.h"
+#include "model/solid/assembly/constraints.h"
 #include "model/solid/assembly/controls.h"
-#include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/equilibrium/newton.h"
@@ -38,50 +38,40 @@ struct follow {
   struct dea_arena memory; // of the arrays
   struct dea_solid *s;
   struct dea_solid_report *report;
-  size_t dofs, pressures, count; // of u, of q, of both
-  double *keep, *first;          // [states] state, [count] u and q at the start
-  double *b, *L;                 // of each own element there, see find_constraints
-  double *weight;                // [pressures] dq weight dq is an energy
-  double *theta;                 // [pressures] of this iteration
-  double *x, *f, *h;             // [count], [count], [dofs] of this iteration; h = -K0 du
-  double *x_old, *f_old, *h_old; // of the one before
-  double *dx[DEPTH], *df[DEPTH]; // [count] differences between iterations, newest first
-  double *dh[DEPTH];             // [dofs]
-  double gram[DEPTH][DEPTH];     // products of df[i] and df[j] by K0
-  int depth;                     // of them that there are
-  double rate;                   // size of the second f over that of the first
-  double size_first, size;       // of f, at first and now
-  double size_renewed;           // when the loads were last brought up to date; or at first
-  int renewed;                   // iteration of that
-  double accuracy;               // of the last f over the first
-  double load_error;             // of the loads' multipliers, at most 1: they have followed
-  bool equilibrium;              // forces and theta are to be those of one
-  double from_V;                 // voltage at the start; NAN: not only that has changed
-  double stiff;                  // kappa of the factor over that of the solid
+  size_t dofs, pressures, count;      // of u, of q, of both
+  double *keep, *first;               // [states] state, [count] u and q at the start
+  struct dea_constraints constraints; // there
+  double *weight;                     // [pressures] dq weight dq is an energy
+  double *theta, *nu;                 // [pressures] of this iteration; work
+  double *x, *f, *h;                  // [count], [count], [dofs] of this iteration; h = -K0 du
+  double *x_old, *f_old, *h_old;      // of the one before
+  double *dx[DEPTH], *df[DEPTH];      // [count] differences between iterations, newest first
+  double *dh[DEPTH];                  // [dofs]
+  double gram[DEPTH][DEPTH];          // products of df[i] and df[j] by K0
+  int depth;                          // of them that there are
+  double rate;                        // size of the second f over that of the first
+  double size_first, size;            // of f, at first and now
+  double size_renewed;                // when the loads were last brought up to date; or at first
+  int renewed;                        // iteration of that
+  double accuracy;                    // of the last f over the first
+  double load_error;                  // of the loads' multipliers, at most 1: they have followed
+  bool equilibrium;                   // forces and theta are to be those of one
+  double from_V;                      // voltage at the start; NAN: not only that has changed
+  double stiff;                       // kappa of the factor over that of the solid
 };
 
 static dea_status allocate(struct follow *w)
 {
-  double **const both[] = {&w->first, &w->x, &w->f, &w->x_old, &w->f_old};
-  double **const moves[] = {&w->h, &w->h_old};
-  double **const pressures[] = {&w->theta, &w->weight};
-  size_t own = w->s->problem.own_count, most = (size_t)w->s->problem.elements.pressures;
-  w->b = dea_arena_alloc(&w->memory, own * most * DEA_HEX_DOFS_MAX, sizeof(double));
-  w->L = dea_arena_alloc(&w->memory, own * most * most, sizeof(double));
-  w->keep = dea_arena_alloc(&w->memory, w->s->work.load_steps.state_count, sizeof(double));
-  for (size_t i = 0; i < sizeof both / sizeof both[0]; i++) {
-    *both[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof moves / sizeof moves[0]; i++) {
-    *moves[i] = dea_arena_alloc(&w->memory, w->dofs, sizeof(double));
-  }
-  for (size_t i = 0; i < sizeof pressures / sizeof pressures[0]; i++) {
-    *pressures[i] = dea_arena_alloc(&w->memory, w->pressures, sizeof(double));
-  }
+  dea_solid_alloc_doubles(&w->memory, w->s->work.load_steps.state_count,
+                          (double **[]){&w->keep, NULL});
+  dea_solid_alloc_doubles(&w->memory, w->count,
+                          (double **[]){&w->first, &w->x, &w->f, &w->x_old, &w->f_old, NULL});
+  dea_solid_alloc_doubles(&w->memory, w->dofs, (double **[]){&w->h, &w->h_old, NULL});
+  dea_solid_alloc_doubles(&w->memory, w->pressures,
+                          (double **[]){&w->theta, &w->nu, &w->weight, NULL});
   for (int i = 0; i < DEPTH; i++) {
-    w->dx[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
-    w->df[i] = dea_arena_alloc(&w->memory, w->count, sizeof(double));
-    w->dh[i] = dea_arena_alloc(&w->memory, w->dofs, sizeof(double));
+    dea_solid_alloc_doubles(&w->memory, w->count, (double **[]){&w->dx[i], &w->df[i], NULL});
+    dea_solid_alloc_doubles(&w->memory, w->dofs, (double **[]){&w->dh[i], NULL});
   }
   return dea_solid_allreduce(w->memory.ctx, dea_arena_status(&w->memory));
 }
@@ -233,59 +223,39 @@ static void save_step(struct follow *w)
 
 /* ---- the slope of theta at the start ---- */
 
-/* b and L of dea_element_type.constraint of every own element. */
+/* With the weights of pressures. */
 static dea_status find_constraints(struct dea_context *ctx, struct follow *w)
 {
-  struct dea_solid *s = w->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = (size_t)p->elements.pressures;
-  dea_status status = DEA_OK;
-  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const struct dea_element *element = dea_solid_element(s, e);
-    struct dea_solid_element_place place;
-    struct dea_element_input in;
-    double *L = w->L + k * most * most;
-    if (element->type->constraint != NULL) {
-      dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-      status = element->type->constraint(element, &in, w->b + k * most * DEA_HEX_DOFS_MAX, L);
-      for (size_t m = 0; m < count; m++) {
-        for (size_t c = 0; c <= m && kappa_of(w, e * most) > 0; c++) {
-          w->weight[e * most + m] +=
-              L[m * count + c] * L[m * count + c] * compliance / kappa_of(w, e * most);
-        }
+  DEA_TRY(ctx, dea_constraints_find(ctx, &w->memory, w->s, &w->constraints));
+  for (size_t k = 0; k < w->s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&w->constraints, k);
+    for (size_t m = 0; m < at.count; m++) {
+      const double *L = at.L + m * at.count, kappa_Pa = kappa_of(w, at.first);
+      for (size_t c = 0; c <= m && kappa_Pa > 0; c++) {
+        w->weight[at.first + m] += L[c] * L[c] * compliance / kappa_Pa;
       }
     }
   }
-  status = dea_solid_allreduce(ctx, status);
   dea_solid_sum(w->weight, w->pressures);
-  return status;
+  return DEA_OK;
 }
 
 /* h += kappa B0 theta. */
 static void add_pressures(struct follow *w)
 {
   struct dea_solid *s = w->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = (size_t)p->elements.pressures;
   double *sum = s->work.trial;
-  memset(sum, 0, w->dofs * sizeof *sum);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const double *b = w->b + k * most * DEA_HEX_DOFS_MAX, *L = w->L + k * most * most;
-    const int *nodes;
-    size_t dofs = 3 * (size_t)dea_solid_nodes(s, e, &nodes);
-    for (size_t m = 0; m < count; m++, b += dofs) {
-      double push = 0;
-      for (size_t c = m; c < count; c++) {
-        push += kappa_of(w, e * most) * L[c * count + m] * w->theta[e * most + c];
-      }
-      for (size_t i = 0; i < dofs; i++) {
-        sum[3 * (size_t)nodes[i / 3] + i % 3] += push * b[i];
+  for (size_t k = 0; k < s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&w->constraints, k);
+    for (size_t m = 0; m < at.count; m++) {
+      double *nu = &w->nu[at.first + m];
+      *nu = 0;
+      for (size_t c = m; c < at.count; c++) {
+        *nu += kappa_of(w, at.first) * at.L[c * at.count + m] * w->theta[at.first + c];
       }
     }
   }
-  dea_solid_sum(sum, w->dofs);
+  dea_constraints_push(&w->constraints, w->nu, sum);
   dea_solid_bodies_collect(s, sum);
   dea_solid_release_held(s, sum);
   for (size_t i = 0; i < w->dofs; i++) {
@@ -296,29 +266,13 @@ static void add_pressures(struct follow *w)
 /* dq = kappa (theta + L^-T b du) into f. */
 static void find_pressures(struct follow *w)
 {
-  struct dea_solid *s = w->s;
-  const struct dea_solid_problem *p = &s->problem;
-  size_t most = (size_t)p->elements.pressures;
-  double du[DEA_HEX_DOFS_MAX], *dq = w->f + w->dofs;
-  memset(dq, 0, w->pressures * sizeof *dq);
-  for (size_t k = 0; k < p->own_count && most > 0; k++) {
-    size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const double *b = w->b + k * most * DEA_HEX_DOFS_MAX, *L = w->L + k * most * most;
-    size_t dofs = 3 * (size_t)dea_solid_gather(s, e, w->f, du);
-    double *grown = dq + e * most;
-    for (size_t m = 0; m < count; m++) {
-      for (size_t i = 0; i < dofs; i++) {
-        grown[m] += b[m * dofs + i] * du[i];
-      }
-    }
-    for (size_t m = count; m-- > 0 && L[0] > 0;) {
-      for (size_t c = m + 1; c < count; c++) {
-        grown[m] -= L[c * count + m] * grown[c];
-      }
-      grown[m] /= L[m * count + m];
-    }
-    for (size_t m = 0; m < count; m++) {
-      grown[m] = L[0] > 0 ? kappa_of(w, e * most) * (w->theta[e * most + m] + grown[m]) : 0;
+  double *dq = w->f + w->dofs;
+  dea_constraints_grow(&w->constraints, w->f, dq);
+  dea_constraints_solve(&w->constraints, true, dq);
+  for (size_t k = 0; k < w->s->problem.own_count; k++) {
+    const struct dea_element_constraint at = dea_constraints_at(&w->constraints, k);
+    for (size_t i = at.first; i < at.first + at.count; i++) {
+      dq[i] = at.L[0] > 0 ? kappa_of(w, i) * (w->theta[i] + dq[i]) : 0;
     }
   }
   dea_solid_sum(dq, w->pressures);
@@ -331,15 +285,10 @@ static dea_status find_forces(struct dea_context *ctx, struct follow *w)
 {
   struct dea_solid *s = w->s;
   set(w, w->x);
-  dea_solid_drop_bulk_modulus(s);
-  dea_status status =
-      dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &w->report->energy_J);
-  dea_solid_restore_dropped_bulk_modulus(s);
-  if (status == DEA_OK) {
-    memcpy(w->h, s->work.g, w->dofs * sizeof *w->h);
-    memcpy(w->theta, s->state.theta, w->pressures * sizeof *w->theta);
-  }
-  return status;
+  DEA_TRY(ctx, dea_solid_assemble_forces(ctx, s, s->state.voltage_V, &w->report->energy_J));
+  memcpy(w->h, s->work.g, w->dofs * sizeof *w->h);
+  memcpy(w->theta, s->state.theta, w->pressures * sizeof *w->theta);
+  return DEA_OK;
 }
 
 /* f at x, where h is r and theta is known. */
@@ -392,8 +341,7 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
   DEA_TRY(ctx, dea_solid_check_interruption(ctx));
   bool renewed = k == 0 || renew_loads(w, k);
   DEA_TRY(ctx, find_forces(ctx, w));
-  w->report->residual = sqrt(dea_solid_dot(s, w->h, w->h)) /
-                        (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+  w->report->residual = dea_solid_residual(s);
   w->report->theta_max = dea_solid_theta_max(s);
   DEA_TRY(ctx, find_step(ctx, w));
   dea_solid_predict_tangent(s, w->f);
@@ -413,7 +361,6 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
     if (k == 0 && knows_before(w)) {
       bend(w);
     }
-    w->report->corrections++;
     dea_context_counters(ctx)->newton_iterations++;
   }
   return DEA_OK;
@@ -474,17 +421,12 @@ static dea_status solve_last_step(struct dea_context *ctx, struct follow *w)
   bool stiff = s->found.stiff_factor_fits;
   dea_solid_state_get(s, s->work.load_steps.factored);
   s->found.factor_before = true;
-  for (size_t i = 0; i < w->dofs; i++) {
-    s->work.trial[i] = -s->work.g[i];
-  }
-  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+  DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
   if (stiff) {
-    dea_solid_raise_bulk_modulus(s);
+    dea_solid_change_bulk_modulus(s, DEA_SOLID_STIFF);
   }
   dea_status status = dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, 1, false, true);
-  if (stiff) {
-    dea_solid_restore_bulk_modulus_at_pressure(s);
-  }
+  s->state.bulk_factor /= stiff ? DEA_SOLID_STIFF : 1; // multipliers are those of the step's end
   for (size_t i = 0; i < w->dofs && status == DEA_OK; i++) {
     s->state.u[i] += s->work.step[i];
   }

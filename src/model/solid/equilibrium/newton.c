@@ -99,7 +99,7 @@ static dea_status search_definite(struct dea_context *ctx, struct dea_solid *s, 
       DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->work.K, more_Pa));
     }
     *there = d->shift_Pa;
-    DEA_TRY(ctx, dea_solid_factor_roughly(ctx, s, most, &negative));
+    DEA_TRY(ctx, dea_solid_factorise(ctx, s, most, &negative));
     d->report->factorisations++;
     d->report->shifted += *there > 0;
     if (*there == 0) {
@@ -124,13 +124,17 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
   return DEA_CHAIN(ctx, status);
 }
 
-/* step = -K^-1 g with the factor that is there. */
-static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
+dea_status dea_solid_linear_step(struct dea_context *ctx, struct dea_solid *s)
 {
   for (size_t k = 0; k < s->problem.dofs; k++) {
     s->work.trial[k] = -s->work.g[k];
   }
   return DEA_CHAIN(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+}
+
+double dea_solid_residual(const struct dea_solid *s)
+{
+  return norm(s, s->work.g) / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
 }
 
 void dea_solid_predict_tangent(struct dea_solid *s, const double *step)
@@ -231,12 +235,12 @@ static dea_status predict_element(struct dea_solid *s, size_t k, double voltage_
   const struct dea_solid_problem *p = &s->problem;
   size_t e = p->own[k], pressures = (size_t)p->elements.pressures;
   const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
+  struct dea_solid_element_input at;
   double element_step[DEA_HEX_DOFS_MAX], *out = s->work.predicted + k * p->elements.predicted_count;
-  dea_solid_element_input(s, e, s->state.u, voltage_V, &place, &in);
+  dea_solid_element_input(s, e, s->state.u, voltage_V, &at);
   dea_solid_gather(s, e, step, element_step);
-  dea_status status = element->type->predict(element, &in, element_step, fraction, stresses, out);
+  dea_status status =
+      element->type->predict(element, &at.in, element_step, fraction, stresses, out);
   memcpy(s->state.theta + e * pressures, out, (size_t)element->pressures * sizeof *out);
   return status;
 }
@@ -273,7 +277,7 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
 static void soften(struct dea_solid *s, struct newton *d, double softness)
 {
   d->unresolved = softness == d->softness ? d->unresolved : 0;
-  dea_solid_scale_bulk_modulus(s, softness / d->softness);
+  s->state.bulk_factor *= softness / d->softness;
   d->softness = softness;
 }
 
@@ -312,7 +316,7 @@ static dea_status apply_step(struct dea_context *ctx, struct dea_solid *s, const
 /* A step with the factor that is there, close to the equilibrium. */
 static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struct newton *d)
 {
-  DEA_TRY(ctx, linear_step(ctx, s));
+  DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
   for (size_t k = 0; k < s->problem.dofs; k++) {
     s->work.trial[k] = s->state.u[k] + s->work.step[k];
   }
@@ -324,7 +328,6 @@ static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struc
     return DEA_OK;
   }
   d->chords++;
-  d->report->corrections++;
   dea_context_counters(ctx)->newton_iterations++;
   return apply_step(ctx, s, d, 1, false);
 }
@@ -343,7 +346,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       DEA_TRY(ctx, factorise_definite(ctx, s, d, &there));
       d->report->iterations++;
     }
-    DEA_TRY(ctx, linear_step(ctx, s));
+    DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
     dea_solid_predict_tangent(s, there == 0 ? s->work.step : NULL);
     double slope = dea_solid_dot(s, s->work.g, s->work.step);
     bool found = search_line(ctx, s, d, slope, &fraction, &rise);
@@ -387,7 +390,7 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
   DEA_TRY(ctx,
           dea_solid_assemble(ctx, s, d->voltage_V, chord ? DEA_FORCE : tangent, &report->energy_J));
   double size = norm(s, s->work.g);
-  report->residual = size / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+  report->residual = dea_solid_residual(s);
   report->theta_max = dea_solid_theta_max(s);
   if (d->chord && (d->chords == o->lag_jacobian || !(size < lag_rate * d->norm_before)) &&
       !(report->residual < o->newton_rtol)) {
@@ -409,7 +412,7 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &report->energy_J));
   }
   dea_solid_keep_scales(s);
-  DEA_TRY(ctx, dea_solid_factor_roughly(ctx, s, 0, &report->unstable_modes));
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, 0, &report->unstable_modes));
   report->factorisations++;
   s->found.factor_fits = report->unstable_modes == 0;
   if (!s->found.factor_fits) { // of a solid that kappa leaves a little compressible
@@ -509,7 +512,7 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
   s->work.takes_increment = false;
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, factorise_definite(ctx, s, &d, &there));
-  DEA_TRY(ctx, linear_step(ctx, s));
+  DEA_TRY(ctx, dea_solid_linear_step(ctx, s));
   // where the whole of the linear step leads too far the held components go their way all the same
   for (double length = 1; length > 0.1; length /= 2) {
     for (size_t i = 0; i < s->problem.dofs; i++) {

@@ -23,7 +23,12 @@ void dea_solid_predict_tangent(struct dea_solid *s, const double *step);
 dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s, bool tangent,
                                     struct dea_solid_report *report);
 
-/* ---- for continuation, which is Newton's method too ---- */
+/* ---- for continuation and load steps with one factor, which are Newton's method too ---- */
+
+/* work.step = -K^-1 work.g with the factor that is there. */
+dea_status dea_solid_linear_step(struct dea_context *ctx, struct dea_solid *s);
+/* Size of work.g over that of the element forces. */
+double dea_solid_residual(const struct dea_solid *s);
 
 /* Before u goes on by fraction step: stresses there into work.predicted, pressures there into the
  * multipliers, each if it is wanted. */

@@ -3,6 +3,7 @@
 
 #include "base/rounded.h"
 #include "model/solid/assembly/bodies.h"
+#include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/problem.h"
 
 #include <lapacke.h>
@@ -11,33 +12,19 @@
 
 enum { RIGID = 6 }; // motions of a rigid body
 
-/* Middle of an element [mm]. */
-static void middle(const struct dea_solid *s, size_t e, double x[3])
-{
-  const struct dea_solid_problem *p = &s->problem;
-  const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
-  int count = dea_grid_nodes_of(p->grid, e);
-  x[0] = x[1] = x[2] = 0;
-  for (int n = 0; n < count; n++) {
-    for (int i = 0; i < 3; i++) {
-      x[i] += 1e3 * p->grid->X[3 * nodes[n] + i] / count;
-    }
-  }
-}
-
-static dea_status check_element(struct dea_context *ctx, const struct dea_solid *s, size_t e,
-                                struct dea_element_strains *strains)
+static dea_status check_element(struct dea_context *ctx, const struct dea_solid *s, size_t e)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
   const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_element_strains strains;
   double X[DEA_HEX_DOFS_MAX], x[3];
   const struct dea_element_input in = {
       .part_material = dea_solid_part_material(s, e), .X = X, .u = rest};
   dea_solid_gather(s, e, s->problem.grid->X, X);
-  if (element->type->strains(element, &in, strains) == DEA_OK) {
+  if (element->type->strains(element, &in, &strains) == DEA_OK) {
     return DEA_OK;
   }
-  middle(s, e, x);
+  dea_solid_element_middle(s, e, x);
   return dea_fail(ctx, DEA_E_ARGUMENT,
                   "element %zu around (%.4g, %.4g, %.4g) mm is inverted in the mesh: its nodes are "
                   "in the wrong order or folded over each other",
@@ -218,14 +205,9 @@ dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
   if (s->found.checked) {
     return DEA_OK;
   }
-  struct dea_element_strains *strains = dea_alloc(ctx, 1, sizeof *strains);
-  DEA_TRY_MEMORY(strains != NULL);
-  dea_status status = DEA_OK;
-  for (size_t e = 0; e < s->problem.grid->element_count && status == DEA_OK; e++) {
-    status = check_element(ctx, s, e, strains);
+  for (size_t e = 0; e < s->problem.grid->element_count; e++) {
+    DEA_TRY(ctx, check_element(ctx, s, e));
   }
-  dea_free(ctx, strains);
-  DEA_TRY(ctx, status);
   DEA_TRY(ctx, check_part_materials(ctx, s));
   if (s->problem.load_count == 0) { // springs and tips may hold what nothing else does
     DEA_TRY(ctx, check_bodies(ctx, s));

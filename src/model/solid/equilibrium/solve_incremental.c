@@ -564,11 +564,9 @@ static dea_status search_create(struct dea_context *ctx, struct dea_arena *memor
 {
   struct dea_solid *s = a->s;
   const size_t count = s->work.load_steps.control_count;
-  double **const controls[] = {&a->goal, &a->next, &a->bad, &a->at, &a->begin};
   memory->ctx = ctx;
-  for (size_t i = 0; i < sizeof controls / sizeof *controls; i++) {
-    *controls[i] = dea_arena_alloc(memory, count, sizeof(double));
-  }
+  dea_solid_alloc_doubles(memory, count,
+                          (double **[]){&a->goal, &a->next, &a->bad, &a->at, &a->begin, NULL});
   dea_status status = dea_solid_allreduce(ctx, dea_arena_status(memory));
   status = status == DEA_OK ? dea_solid_save_state(ctx, s, &a->limit) : status;
   status = status == DEA_OK ? dea_solid_save_state(ctx, s, &a->start) : status;
@@ -605,32 +603,4 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
   dea_solid_saved_state_free(&a.start);
   dea_arena_free(&memory);
   return DEA_CHAIN(ctx, status);
-}
-
-// States ------------------------------------------------------------------------------------------
-
-dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *s,
-                                struct dea_solid_saved_state *out)
-{
-  *out = (struct dea_solid_saved_state){.memory = {.ctx = ctx}};
-  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
-  const struct dea_load_steps *steps = &s->work.load_steps;
-  out->state = dea_arena_alloc(&out->memory, steps->state_count, sizeof *out->state);
-  out->controls = dea_arena_alloc(&out->memory, steps->control_count, sizeof *out->controls);
-  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&out->memory)));
-  dea_solid_state_get(s, out->state);
-  dea_solid_controls_get(s, out->controls);
-  return DEA_OK;
-}
-
-void dea_solid_saved_state_free(struct dea_solid_saved_state *saved)
-{
-  dea_arena_free(&saved->memory);
-}
-
-void dea_solid_restore_state(struct dea_solid *s, const struct dea_solid_saved_state *at)
-{
-  dea_solid_state_set(s, at->state);
-  dea_solid_controls_set(s, at->controls);
-  dea_solid_forget(s);
 }

@@ -2,8 +2,7 @@
  * (docs/theory/stops.md). */
 #pragma once
 
-#include "base/arena.h"
-#include "model/solid/assembly/solid.h"
+#include "model/solid/assembly/controls.h"
 
 enum dea_solid_stop_kind {
   DEA_STOP_UNKNOWN,  // the path cannot be followed either
@@ -56,15 +55,3 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
 
 /* Width of the increment, over all of it, to which load steps close in on where they end. */
 static const double dea_branch_jump_width = 1e-3;
-
-/* Where the solid has been. */
-struct dea_solid_saved_state {
-  struct dea_arena memory;
-  double *state, *controls;
-};
-/* out: freed by the caller, also on failure. */
-dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *solid,
-                                struct dea_solid_saved_state *out);
-void dea_solid_saved_state_free(struct dea_solid_saved_state *saved);
-/* Brings the solid back to there. */
-void dea_solid_restore_state(struct dea_solid *solid, const struct dea_solid_saved_state *at);

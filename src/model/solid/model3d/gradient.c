@@ -154,7 +154,7 @@ static double step_along(const struct work *w, const double *v)
 /* Their pressures. */
 static dea_status prepare_modes(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
-  const size_t multipliers = dea_adjoint_multipliers(w->adjoint);
+  const size_t multipliers = dea_solid_multiplier_count(w->solid);
   double *pressure = dea_arena_alloc(memory, w->mode_count * multipliers, sizeof(double));
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
   for (size_t i = 0; i < w->mode_count; i++, pressure += multipliers) {
@@ -171,7 +171,7 @@ static dea_status assemble_along(struct dea_context *ctx, struct work *w, const 
                                  double voltage_V, double steps)
 {
   struct dea_solid *s = w->solid;
-  const size_t dofs = s->problem.dofs, multipliers = dea_adjoint_multipliers(w->adjoint);
+  const size_t dofs = s->problem.dofs, multipliers = dea_solid_multiplier_count(w->solid);
   double energy_J;
   dea_solid_state_get(s, w->here); // what is held may have been moved
   for (size_t i = 0; i < dofs; i++) {
@@ -480,7 +480,7 @@ static dea_status find_by_changes(struct dea_context *ctx, struct work *w, doubl
 /* For what residuals are taken along. */
 static dea_status reserve(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
-  const size_t states = w->solid->problem.dofs + dea_adjoint_multipliers(w->adjoint);
+  const size_t states = w->solid->problem.dofs + dea_solid_multiplier_count(w->solid);
   w->here = dea_arena_alloc(memory, states, sizeof(double));
   w->there = dea_arena_alloc(memory, states, sizeof(double));
   return dea_solid_allreduce(ctx, dea_arena_status(memory));

@@ -648,11 +648,11 @@ static dea_status go_to_loads(struct dea_context *ctx, struct dea_model *model)
   DEA_TRY(ctx, dea_solid_dead_loads_set(ctx, model));
   DEA_TRY(ctx, dea_solid_bodies_load(ctx, model));
   const bool twisted = is_twisted_slack(model->layout);
-  dea_solid_accept_unstable(model->solid, twisted); // of its many wrinkles none is followed
+  model->solid->settings.accept_unstable = twisted; // of its many wrinkles none is followed
   const dea_status status = dea_load_steps_solve(ctx, model->solid, 0, &model->at.report);
   DEA_TRY(ctx, explain_loads(ctx, model, status));
   const int modes = model->at.report.unstable_modes;
-  dea_solid_accept_unstable(model->solid, twisted && modes > 0);
+  model->solid->settings.accept_unstable = twisted && modes > 0;
   return !twisted || modes == 0
              ? DEA_OK
              : dea_finding_add(

@@ -556,7 +556,7 @@ static dea_status observe_channels(struct dea_context *ctx, struct dea_observer 
   double *voltage = o->work, *charge = voltage + count, *capacitance = charge + count;
   dea_solid_channel_voltages(solid, voltage);
   if (solid->problem.field == NULL) {
-    DEA_TRY(ctx, dea_solid_charges(ctx, solid, charge));
+    DEA_TRY(ctx, dea_solid_flows(ctx, solid, NULL, charge, NULL));
     DEA_TRY(ctx, dea_solid_capacitances(ctx, solid, true, capacitance));
   } else {
     DEA_TRY(ctx, charge_coupled(ctx, o, solid, voltage, charge, capacitance));

@@ -54,7 +54,8 @@ static dea_status purge(struct dea_context *ctx, const struct dea_solid *s,
 static dea_status find_rest(struct dea_context *ctx, struct dea_solid *s,
                             struct dea_solid_response *r, double *force)
 {
-  DEA_TRY(ctx, dea_solid_factor_any(ctx, s));
+  int negative;
+  DEA_TRY(ctx, dea_solid_factorise(ctx, s, DEA_FACTOR_EXACT, &negative));
   for (size_t k = 0; k < TERMS; k++) {
     double *term = r->rest + k * r->dofs;
     DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, force, s->work.trial));
@@ -73,8 +74,7 @@ static dea_status reserve(struct dea_context *ctx, const struct dea_solid *s, si
   r->count = count;
   r->dofs = 3 * s->problem.grid->node_count;
   r->memory.ctx = ctx;
-  r->square = dea_arena_alloc(&r->memory, count + 1, sizeof *r->square);
-  r->push = dea_arena_alloc(&r->memory, count + 1, sizeof *r->push);
+  dea_solid_alloc_doubles(&r->memory, count + 1, (double **[]){&r->square, &r->push, NULL});
   r->shape = dea_arena_alloc(&r->memory, count * r->dofs + 1, sizeof *r->shape);
   r->rest = dea_arena_alloc(&r->memory, TERMS * r->dofs, sizeof *r->rest);
   return dea_solid_allreduce_any(r->memory.failed) ? DEA_E_MEMORY : DEA_OK;

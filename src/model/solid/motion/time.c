@@ -21,7 +21,7 @@ struct charged {
 };
 
 struct dea_solid_time {
-  struct dea_arena memory; // of all arrays but keep and controls
+  struct dea_arena memory; // of all arrays but those of the accepted state
   struct dea_solid *solid;
   struct dea_internal_variables *variables;
   struct dea_solid_inertia inertia;
@@ -36,8 +36,7 @@ struct dea_solid_time {
   double *u_before;                 // [count] of the state before the accepted one
   double *work;                     // [count]
   double step_s, step_before_s;     // of the step that is tried; of the accepted one, 0: a corner
-  double *keep, *controls;          // the accepted state, as of a path
-  size_t keep_count, control_count; // numbers in them
+  struct dea_solid_saved_state accepted;
   struct dea_solid_energies sums, sums_next;
   double first_J; // stored energy at the start
   double capacitance_F, capacitance_next_F;
@@ -169,32 +168,19 @@ static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t,
 
 static dea_status allocate_time(struct dea_solid_time *t)
 {
-  double **const memory[] = {&t->v,
-                             &t->a,
-                             &t->F,
-                             &t->v_next,
-                             &t->F_next,
-                             &t->a_next,
-                             &t->work,
-                             &t->u_before,
-                             &t->first,
-                             &t->inertia.around,
-                             &t->inertia.constant,
-                             &t->inertia.away,
-                             &t->inertia.force};
-  for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
-    *memory[i] = dea_arena_alloc(&t->memory, t->count, sizeof(double));
-  }
+  dea_solid_alloc_doubles(&t->memory, t->count,
+                          (double **[]){&t->v, &t->a, &t->F, &t->v_next, &t->F_next, &t->a_next,
+                                        &t->work, &t->u_before, &t->first, &t->inertia.around,
+                                        &t->inertia.constant, &t->inertia.away, &t->inertia.force,
+                                        NULL});
   if (t->own) {
-    const size_t count = t->solid->problem.own_count;
-    struct charged *const charged[] = {&t->charged, &t->charged_next};
     t->channels = t->solid->problem.channel_count + 1;
-    t->own_V = dea_arena_alloc(&t->memory, t->channels, sizeof(double));
-    t->own_first_V = dea_arena_alloc(&t->memory, t->channels, sizeof(double));
-    for (size_t i = 0; i < 2; i++) {
-      charged[i]->voltage_V = dea_arena_alloc(&t->memory, count, sizeof(double));
-      charged[i]->capacitance_F = dea_arena_alloc(&t->memory, count, sizeof(double));
-    }
+    dea_solid_alloc_doubles(&t->memory, t->channels,
+                            (double **[]){&t->own_V, &t->own_first_V, NULL});
+    dea_solid_alloc_doubles(&t->memory, t->solid->problem.own_count,
+                            (double **[]){&t->charged.voltage_V, &t->charged.capacitance_F,
+                                          &t->charged_next.voltage_V,
+                                          &t->charged_next.capacitance_F, NULL});
   }
   return dea_arena_status(&t->memory);
 }
@@ -251,8 +237,8 @@ static void return_to_accepted(struct dea_solid_time *t)
   struct dea_solid *s = t->solid;
   t->open = false;
   s->state.inertia = NULL;
-  dea_solid_state_set(s, t->keep);
-  dea_solid_controls_set(s, t->controls);
+  dea_solid_state_set(s, t->accepted.state);
+  dea_solid_controls_set(s, t->accepted.controls);
   s->found.factor_fits = false;
 }
 
@@ -274,8 +260,7 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
   dea_solid_forget(t->solid); // what it has is of the step
   dea_internal_variables_destroy(ctx, t->variables);
   dea_arena_free(&t->memory);
-  dea_free(ctx, t->keep);
-  dea_free(ctx, t->controls);
+  dea_solid_saved_state_free(&t->accepted);
   dea_free(ctx, t);
 }
 
@@ -294,25 +279,11 @@ void dea_solid_time_drive(struct dea_solid_time *time, const double *own_V)
 /* The accepted state, to come back to. */
 static dea_status save_accepted(struct dea_context *ctx, struct dea_solid_time *t)
 {
-  struct dea_solid *s = t->solid;
-  const struct dea_load_steps *path = &s->work.load_steps;
   if (t->open) {
     return_to_accepted(t);
   }
-  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
-  if (t->keep_count != path->state_count || t->control_count != path->control_count) {
-    double *state = dea_resize(ctx, t->keep, path->state_count, sizeof *state);
-    t->keep = state != NULL ? state : t->keep;
-    double *controls = dea_resize(ctx, t->controls, path->control_count, sizeof *controls);
-    t->controls = controls != NULL ? controls : t->controls;
-    if (dea_solid_allreduce_any(state == NULL || controls == NULL)) {
-      return DEA_E_MEMORY;
-    }
-    t->keep_count = path->state_count;
-    t->control_count = path->control_count;
-  }
-  dea_solid_state_get(s, t->keep);
-  dea_solid_controls_get(s, t->controls);
+  dea_solid_saved_state_free(&t->accepted);
+  DEA_TRY(ctx, dea_solid_save_state(ctx, t->solid, &t->accepted));
   t->open = true;
   return DEA_OK;
 }
@@ -388,13 +359,13 @@ static dea_status find_acceleration(struct dea_context *ctx, struct dea_solid_ti
   for (size_t i = 0; i < t->count; i++) {
     t->a[i] = (s->state.u[i] - inertia->around[i]) / (h * h);
   }
-  memcpy(s->state.u, t->keep, s->problem.dofs * sizeof *s->state.u);
+  memcpy(s->state.u, t->accepted.state, s->problem.dofs * sizeof *s->state.u);
   s->found.factor_fits = false;
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
   DEA_TRY(ctx, find_forces(ctx, t, t->F));
   DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, t->a, inertia->force));
   constrain_forces(t, inertia->force, t->F);
-  dea_solid_state_get(s, t->keep); // with its pressures
+  dea_solid_state_get(s, t->accepted.state); // with its pressures
   return DEA_OK;
 }
 
@@ -439,15 +410,6 @@ double dea_solid_time_charged_J(const struct dea_solid_time *time, bool tried)
   return tried ? time->charged_next.energy_J : time->charged.energy_J;
 }
 
-static double half_square(const double *v, const double *momentum, size_t count)
-{
-  double sum = 0;
-  for (size_t i = 0; i < count; i++) {
-    sum += 0.5 * v[i] * momentum[i];
-  }
-  return sum;
-}
-
 /* sums_next at the end of the step that was tried; needs F_next and v_next. */
 static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *t)
 {
@@ -460,7 +422,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
     DEA_TRY(ctx, dea_internal_variables_close(ctx, t->variables, s, &branches));
   }
   DEA_TRY(ctx, find_stored(ctx, t, &stored, &t->capacitance_next_F, &t->charged_next));
-  const double voltage_V[2] = {t->controls[0], s->state.voltage_V};
+  const double voltage_V[2] = {t->accepted.controls[0], s->state.voltage_V};
   const double capacitance_F[2] = {t->capacitance_F, t->capacitance_next_F};
   sums->supply += t->own ? work_between(s, &t->charged, &t->charged_next)
                          : source_work(voltage_V, capacitance_F);
@@ -468,7 +430,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   sums->branches = branches.stored;
   sums->dissipated += branches.dissipated;
   for (size_t i = 0; i < t->count; i++) { // of the forces, by the trapezoidal rule
-    double part = 0.5 * (t->F[i] + t->F_next[i]) * (s->state.u[i] - t->keep[i]);
+    double part = 0.5 * (t->F[i] + t->F_next[i]) * (s->state.u[i] - t->accepted.state[i]);
     work -= part;
     motion += s->problem.held[i] == DEA_PRESCRIBED ? part : 0;
   }
@@ -476,7 +438,10 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   if (t->inertial) {
     work += motion;
     DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, t->v_next, t->work));
-    sums->kinetic = half_square(t->v_next, t->work, t->count);
+    sums->kinetic = 0;
+    for (size_t i = 0; i < t->count; i++) {
+      sums->kinetic += 0.5 * t->v_next[i] * t->work[i];
+    }
     sums->damped += t->step_s > 0 ? work - (sums->kinetic - t->sums.kinetic) : 0;
   }
   return DEA_OK;
@@ -504,7 +469,7 @@ static double relaxing(const struct dea_solid_time *t)
  * before drawn on; after a corner, where there is none, to the way gone. */
 static double step_error(const struct dea_solid_time *t)
 {
-  const double *u = t->solid->state.u, *from = t->keep;
+  const double *u = t->solid->state.u, *from = t->accepted.state;
   double h = t->step_s, before = t->step_before_s, most = 0, fraction = relaxing(t);
   double weight = before > 0 ? 0.25 * h / (h + before) : 0.125;
   for (size_t i = 0; i < t->count; i++) {
@@ -518,16 +483,6 @@ static double step_error(const struct dea_solid_time *t)
 
 /* ---- the end of a step ---- */
 
-/* What goes with the state that has been found, so that taking it cannot fail. */
-static dea_status close_step(struct dea_context *ctx, struct dea_solid_time *t)
-{
-  dea_status status = find_forces(ctx, t, t->F_next);
-  status = status == DEA_OK ? constrain_at_end(ctx, t) : status;
-  status = status == DEA_OK ? find_energies(ctx, t) : status;
-  DEA_TRY_ELSE(ctx, status, return_to_accepted(t));
-  return DEA_OK;
-}
-
 dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *t, double *error_m)
 {
   const struct dea_alpha *alpha = &t->alpha;
@@ -536,7 +491,11 @@ dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *
     t->a_next[i] = (t->solid->state.u[i] - t->inertia.around[i]) / (alpha->beta * h * h);
     t->v_next[i] = t->v[i] + h * ((1 - alpha->gamma) * t->a[i] + alpha->gamma * t->a_next[i]);
   }
-  DEA_TRY(ctx, close_step(ctx, t));
+  // what goes with the state that has been found, so that taking it cannot fail
+  dea_status status = find_forces(ctx, t, t->F_next);
+  status = status == DEA_OK ? constrain_at_end(ctx, t) : status;
+  status = status == DEA_OK ? find_energies(ctx, t) : status;
+  DEA_TRY_ELSE(ctx, status, return_to_accepted(t));
   if (error_m != NULL) {
     *error_m = h > 0 ? step_error(t) : 0;
   }
@@ -553,12 +512,12 @@ static void swap_arrays(double **a, double **b)
 void dea_solid_time_accept(struct dea_solid_time *t)
 {
   if (t->variables != NULL) {
-    dea_internal_variables_accept(t->variables, t->solid);
+    dea_internal_variables_accept(t->variables);
   }
   swap_arrays(&t->F, &t->F_next);
   swap_arrays(&t->v, &t->v_next);
   swap_arrays(&t->a, &t->a_next);
-  memcpy(t->u_before, t->keep, t->count * sizeof *t->u_before);
+  memcpy(t->u_before, t->accepted.state, t->count * sizeof *t->u_before);
   t->step_before_s = t->step_s;
   t->sums = t->sums_next;
   t->start = t->start_next;

@@ -10,18 +10,22 @@
 #include <complex.h>
 #include <string.h>
 
-enum {
-  PARTS = 2
-}; // K without branches, and M; then one for all part materials with the same branches
+enum { PARTS = 2 }; // K without branches, and M; then one for all part materials with the same
 
 struct system {
+  struct dea_arena memory; // of all arrays
   struct dea_solid *solid;
   const struct dea_branches *branches;
-  size_t part_count;     // PARTS + different branches
-  Mat *part;             // K, M, then what branches add at infinite frequency
-  size_t *part_material; // [part_count] one that has those
-  double complex *share; // [part_count] that each counts at the frequency
-  Mat A, factor;         // two rows a row of K: real and imaginary part
+  const struct dea_damping *damping;
+  size_t part_count;         // PARTS + different branches
+  Mat *part;                 // K, M, then what branches add at infinite frequency
+  size_t *part_material;     // [part_count] one that has those
+  double complex *share;     // [part_count] that each counts at the frequency
+  struct dea_branches *only; // [part materials] work
+  double complex *row;       // [longest row] work
+  double *force;             // [dofs] per volt
+  double *real, *imaginary;  // [dofs] the answer
+  Mat A, factor;             // two rows a row of K: real and imaginary part
   Vec right, answer;
 };
 
@@ -45,19 +49,18 @@ static bool are_alike(const struct dea_branches *a, const struct dea_branches *b
 
 /* What these branches add to K when they are rigid dashpots, in all part materials that have them.
  */
-static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size_t which,
-                                 struct dea_branches *only, Mat *out)
+static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size_t which, Mat *out)
 {
   struct dea_solid *s = y->solid;
   struct dea_internal_variables *variables;
   // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): of the caller
-  memset(only, 0, s->problem.part_material_count * sizeof *only);
+  memset(y->only, 0, s->problem.part_material_count * sizeof *y->only);
   for (size_t l = which; l < s->problem.part_material_count; l++) {
     if (are_alike(&y->branches[l], &y->branches[which])) {
-      only[l] = y->branches[l];
+      y->only[l] = y->branches[l];
     }
   }
-  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, only, &variables));
+  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, y->only, &variables));
   dea_internal_variables_begin(variables, s, 0);
   s->state.internal_variables = variables;
   dea_status status = copy_tangent(ctx, y, out);
@@ -79,11 +82,11 @@ static dea_status check_stable(struct dea_context *ctx, struct dea_solid *s)
                         negative);
 }
 
-static dea_status build_parts(struct dea_context *ctx, struct system *y, struct dea_branches *only)
+static dea_status build_parts(struct dea_context *ctx, struct system *y)
 {
+  y->part_count = PARTS;
   DEA_TRY(ctx, copy_tangent(ctx, y, &y->part[0]));
   DEA_TRY(ctx, dea_solid_create_mass(ctx, y->solid, &y->part[1]));
-  y->part_count = PARTS;
   for (size_t l = 0; l < y->solid->problem.part_material_count; l++) {
     bool made = y->branches[l].count == 0;
     for (size_t p = PARTS; p < y->part_count && !made; p++) {
@@ -91,7 +94,7 @@ static dea_status build_parts(struct dea_context *ctx, struct system *y, struct 
     }
     if (!made) {
       y->part_material[y->part_count] = l;
-      DEA_TRY(ctx, branch_tangent(ctx, y, l, only, &y->part[y->part_count++]));
+      DEA_TRY(ctx, branch_tangent(ctx, y, l, &y->part[y->part_count++]));
     }
   }
   return DEA_OK;
@@ -111,13 +114,12 @@ static double complex share_at(const struct dea_branches *b, double w)
 }
 
 /* What each part counts in the matrix at a frequency. */
-static void set_factors(const struct system *y, double w, const struct dea_damping *damping,
-                        double complex *factor)
+static void set_shares(const struct system *y, double w)
 {
-  factor[0] = 1 + _Complex_I * (w * damping->stiffness_s);
-  factor[1] = -w * w + _Complex_I * (w * damping->mass_per_s);
+  y->share[0] = 1 + _Complex_I * (w * y->damping->stiffness_s);
+  y->share[1] = -w * w + _Complex_I * (w * y->damping->mass_per_s);
   for (size_t p = PARTS; p < y->part_count; p++) {
-    factor[p] = share_at(&y->branches[y->part_material[p]], w);
+    y->share[p] = share_at(&y->branches[y->part_material[p]], w);
   }
 }
 
@@ -133,8 +135,7 @@ static PetscErrorCode begin_rows(const struct system *y, PetscErrorCode (*set)(M
 
 /* Adds a row to A: (a_r + i a_i)(q_r + i q_i) = f + 0 i as the symmetric
  * [a_r, -a_i; -a_i, -a_r] [q_r; q_i] = [f; 0]. */
-static PetscErrorCode add_row(const struct system *y, PetscInt row, const double complex *factor,
-                              double complex *sum)
+static PetscErrorCode add_row(const struct system *y, PetscInt row)
 {
   PetscInt count = 0;
   const PetscInt *columns;
@@ -143,10 +144,10 @@ static PetscErrorCode add_row(const struct system *y, PetscInt row, const double
   for (size_t p = 0; p < y->part_count && code == 0; p++) {
     code = MatGetRow(y->part[p], row, &count, &columns, &values);
     for (PetscInt k = 0; k < count && code == 0; k++) {
-      sum[k] = (p == 0 ? 0 : sum[k]) + factor[p] * values[k];
+      y->row[k] = (p == 0 ? 0 : y->row[k]) + y->share[p] * values[k];
     }
     for (PetscInt k = 0; k < count && code == 0 && p + 1 == y->part_count; k++) {
-      double re = creal(sum[k]), im = cimag(sum[k]);
+      double re = creal(y->row[k]), im = cimag(y->row[k]);
       const PetscScalar block[4] = {re, -im, -im, -re};
       code = MatSetValuesBlocked(y->A, 1, &row, 1, &columns[k], block, INSERT_VALUES);
     }
@@ -176,44 +177,30 @@ static PetscErrorCode count_rows(const struct system *y, PetscInt from, PetscInt
   return code == 0 ? MatRestoreRowUpperTriangular(K) : code;
 }
 
-static PetscErrorCode create_matrix(struct system *y, PetscInt rows, const PetscInt *here,
-                                    const PetscInt *others)
-{
-  PetscErrorCode code = MatCreateSBAIJ(PETSC_COMM_WORLD, 2, 2 * rows, 2 * rows, PETSC_DETERMINE,
-                                       PETSC_DETERMINE, 0, here, 0, others, &y->A);
-  return code == 0 ? MatCreateVecs(y->A, &y->answer, &y->right) : code;
-}
-
-static dea_status prepare_matrix(struct dea_context *ctx, struct system *y, double complex **sum)
+static dea_status prepare_matrix(struct dea_context *ctx, struct system *y)
 {
   PetscInt from, end, longest = 0;
   DEA_PETSC(ctx, MatGetOwnershipRange(y->part[0], &from, &end));
-  size_t rows = (size_t)(end - from);
-  PetscInt *lengths = dea_solid_alloc(ctx, 2 * rows + 1, sizeof *lengths);
-  dea_status status = lengths == NULL ? DEA_E_MEMORY : DEA_OK;
-  status = status == DEA_OK
-               ? dea_solid_petsc(ctx, count_rows(y, from, end, lengths, lengths + rows, &longest),
-                                 "MatGetRow")
-               : status;
-  status = status == DEA_OK
-               ? dea_solid_petsc(ctx, create_matrix(y, end - from, lengths, lengths + rows),
-                                 "MatCreateSBAIJ")
-               : status;
-  dea_free(ctx, lengths);
-  DEA_TRY(ctx, status);
-  *sum = dea_solid_alloc(ctx, (size_t)longest + 1, sizeof **sum);
-  return *sum == NULL ? DEA_E_MEMORY : DEA_OK;
+  const PetscInt rows = end - from;
+  PetscInt *here = dea_arena_alloc(&y->memory, (size_t)rows + 1, sizeof *here);
+  PetscInt *others = dea_arena_alloc(&y->memory, (size_t)rows + 1, sizeof *others);
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&y->memory)));
+  DEA_TRY(ctx, dea_solid_petsc(ctx, count_rows(y, from, end, here, others, &longest), "MatGetRow"));
+  DEA_PETSC(ctx, MatCreateSBAIJ(PETSC_COMM_WORLD, 2, 2 * rows, 2 * rows, PETSC_DETERMINE,
+                                PETSC_DETERMINE, 0, here, 0, others, &y->A));
+  DEA_PETSC(ctx, MatCreateVecs(y->A, &y->answer, &y->right));
+  y->row = dea_arena_alloc(&y->memory, (size_t)longest + 1, sizeof *y->row);
+  return DEA_CHAIN(ctx, dea_solid_allreduce(ctx, dea_arena_status(&y->memory)));
 }
 
-static PetscErrorCode fill_matrix(const struct system *y, const double complex *factor,
-                                  double complex *sum)
+static PetscErrorCode fill_matrix(const struct system *y)
 {
   PetscInt from, end;
   PetscErrorCode code = MatGetOwnershipRange(y->part[0], &from, &end);
   code = code == 0 ? MatZeroEntries(y->A) : code;
   code = code == 0 ? begin_rows(y, MatGetRowUpperTriangular) : code;
   for (PetscInt row = from; row < end && code == 0; row++) {
-    code = add_row(y, row, factor, sum);
+    code = add_row(y, row);
   }
   return code == 0 ? begin_rows(y, MatRestoreRowUpperTriangular) : code;
 }
@@ -238,15 +225,13 @@ static dea_status interleave(struct dea_context *ctx, Vec rows, Vec pairs, int o
   return DEA_OK;
 }
 
-/* One frequency: q_r and q_i of the whole, [dofs] each. */
-static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
-                           const struct dea_damping *damping, double complex *sum, double *real,
-                           double *imaginary)
+/* One frequency: q_r and q_i of the whole. */
+static dea_status solve_at(struct dea_context *ctx, struct system *y, double w)
 {
   struct dea_solid *s = y->solid;
-  double *out[2] = {real, imaginary};
-  set_factors(y, w, damping, y->share);
-  dea_status status = dea_solid_petsc(ctx, fill_matrix(y, y->share, sum), "MatSetValuesBlocked");
+  double *const out[2] = {y->real, y->imaginary};
+  set_shares(y, w);
+  dea_status status = dea_solid_petsc(ctx, fill_matrix(y), "MatSetValuesBlocked");
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, y->A));
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, dea_solid_factor(ctx, y->A, &y->factor));
@@ -258,50 +243,43 @@ static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
   return DEA_OK;
 }
 
-/* The force per volt as the right side; force: [dofs], changed. */
-static dea_status set_right(struct dea_context *ctx, struct system *y, double *force)
-{
-  DEA_TRY(ctx, dea_solid_to_vector(ctx, y->solid, force, y->solid->work.right));
-  DEA_PETSC(ctx, VecSet(y->right, 0));
-  return DEA_CHAIN(ctx, interleave(ctx, y->solid->work.right, y->right, 0, false));
-}
-
-/* Who takes the answers. */
-struct taker {
-  dea_status (*take)(struct dea_context *ctx, void *user, size_t i, const double *real,
-                     const double *imaginary);
-  void *user;
-};
-
-static dea_status respond(struct dea_context *ctx, struct system *y,
-                          const struct dea_damping *damping, const double *rad_per_s, size_t count,
-                          const struct taker *taker)
+/* The force per volt as the right side. */
+static dea_status set_right(struct dea_context *ctx, struct system *y)
 {
   struct dea_solid *s = y->solid;
-  const struct dea_solid_problem *p = &s->problem;
-  double complex *sum = NULL;
-  double *memory = dea_alloc(ctx, 3 * p->dofs, sizeof *memory);
-  struct dea_branches *only = dea_alloc(ctx, p->part_material_count, sizeof *only);
-  dea_status status =
-      dea_solid_allreduce_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
-  status = status == DEA_OK ? check_stable(ctx, s) : status;
-  status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, 0, memory) : status;
-  status = status == DEA_OK ? build_parts(ctx, y, only) : status;
-  status = status == DEA_OK ? prepare_matrix(ctx, y, &sum) : status;
-  status = status == DEA_OK ? set_right(ctx, y, memory) : status;
-  for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    double *real = memory + p->dofs, *imaginary = real + p->dofs;
-    if (dea_interrupted_anywhere(ctx)) {
-      status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted at frequency %zu of %zu", i, count);
-      break;
-    }
-    status = solve_at(ctx, y, rad_per_s[i], damping, sum, real, imaginary);
-    status = status == DEA_OK ? taker->take(ctx, taker->user, i, real, imaginary) : status;
+  DEA_TRY(ctx, dea_solid_to_vector(ctx, s, y->force, s->work.right));
+  DEA_PETSC(ctx, VecSet(y->right, 0));
+  return DEA_CHAIN(ctx, interleave(ctx, s->work.right, y->right, 0, false));
+}
+
+static dea_status prepare(struct dea_context *ctx, struct system *y)
+{
+  const size_t materials = y->solid->problem.part_material_count, parts = PARTS + materials;
+  y->part = dea_arena_alloc(&y->memory, parts, sizeof *y->part);
+  y->part_material = dea_arena_alloc(&y->memory, parts, sizeof *y->part_material);
+  y->share = dea_arena_alloc(&y->memory, parts, sizeof *y->share);
+  y->only = dea_arena_alloc(&y->memory, materials, sizeof *y->only);
+  dea_solid_alloc_doubles(&y->memory, y->solid->problem.dofs,
+                          (double **[]){&y->force, &y->real, &y->imaginary, NULL});
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&y->memory)));
+  DEA_TRY(ctx, check_stable(ctx, y->solid));
+  DEA_TRY(ctx, dea_solid_voltage_force(ctx, y->solid, 0, y->force));
+  DEA_TRY(ctx, build_parts(ctx, y));
+  DEA_TRY(ctx, prepare_matrix(ctx, y));
+  return DEA_CHAIN(ctx, set_right(ctx, y));
+}
+
+static void release(struct system *y)
+{
+  for (size_t p = 0; p < y->part_count; p++) {
+    MatDestroy(&y->part[p]);
   }
-  dea_free(ctx, sum);
-  dea_free(ctx, only);
-  dea_free(ctx, memory);
-  return status;
+  MatDestroy(&y->A);
+  MatDestroy(&y->factor);
+  VecDestroy(&y->right);
+  VecDestroy(&y->answer);
+  dea_arena_free(&y->memory);
+  y->solid->found.factor_fits = y->solid->found.predicted_fits = false;
 }
 
 dea_status
@@ -312,32 +290,22 @@ dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *s,
                                              const double *real, const double *imaginary),
                           void *user)
 {
-  const struct taker taker = {take, user};
-  const size_t capacity = PARTS + s->problem.part_material_count;
-  struct system y = {.solid = s, .branches = branches};
+  struct system y = {.memory = {.ctx = ctx}, .solid = s, .branches = branches, .damping = damping};
   DEA_TRY(ctx, dea_solid_response_check(ctx, s));
   if (s->work.rank_one.count > 0) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "the answer of viscous plies to an excitation does not know enclosed volumes: "
                     "take `viscosity: none` for them, or a history in time (compute.transient)");
   }
-  y.part = dea_alloc(ctx, capacity, sizeof(Mat));
-  y.part_material = dea_alloc(ctx, capacity, sizeof *y.part_material);
-  y.share = dea_alloc(ctx, capacity, sizeof *y.share);
-  const bool lacks = y.part == NULL || y.part_material == NULL || y.share == NULL;
-  const bool any_lacks = dea_solid_allreduce_any(lacks);
-  dea_status status =
-      lacks || any_lacks ? DEA_E_MEMORY : respond(ctx, &y, damping, rad_per_s, count, &taker);
-  for (size_t p = 0; p < capacity && y.part != NULL; p++) {
-    MatDestroy(&y.part[p]);
+  dea_status status = prepare(ctx, &y);
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    if (dea_interrupted_anywhere(ctx)) {
+      status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted at frequency %zu of %zu", i, count);
+      break;
+    }
+    status = solve_at(ctx, &y, rad_per_s[i]);
+    status = status == DEA_OK ? take(ctx, user, i, y.real, y.imaginary) : status;
   }
-  dea_free(ctx, y.part);
-  dea_free(ctx, y.part_material);
-  dea_free(ctx, y.share);
-  MatDestroy(&y.A);
-  MatDestroy(&y.factor);
-  VecDestroy(&y.right);
-  VecDestroy(&y.answer);
-  s->found.factor_fits = s->found.predicted_fits = false;
+  release(&y);
   return DEA_CHAIN(ctx, status);
 }
