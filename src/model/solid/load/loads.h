@@ -64,7 +64,8 @@ struct dea_enclosed {
   double stiffness_Pa_per_m3; // of liquid
 };
 void dea_pressure_enclose(struct dea_pressure *pressure, const struct dea_enclosed *enclosed);
-/* V - V0 at displacements u, and the pressure there. */
+/* V - V0 at displacements u, and the pressure there; one that is given is the last goal, or how far
+ * a solve came, whatever u. */
 double dea_pressure_volume_m3(const struct dea_pressure *pressure, const double *u);
 double dea_pressure_at_Pa(struct dea_pressure *pressure, const double *u);
 /* Adds the slopes of that volume by u [node_count][3]. */
@@ -77,8 +78,6 @@ void dea_pressure_stiffen(struct dea_pressure *pressure, const double *u, double
 void dea_pressure_hold(struct dea_pressure *pressure, const struct dea_pressure *other);
 /* Pressure that the next solve goes to, positive into the body. */
 void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa);
-/* As it stands: the last goal, or how far a solve came. */
-double dea_pressure_get(const struct dea_pressure *pressure);
 struct dea_solid_load dea_pressure_load(struct dea_pressure *pressure);
 
 /* ---- contact with a rigid tip or another surface, without friction ---- */

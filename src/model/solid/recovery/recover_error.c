@@ -83,8 +83,8 @@ static dea_status prepare(struct work *w)
     w->group[e] = (int)((size_t)grid->region[e] * plies + (size_t)grid->ply[e]);
   }
   for (int flat = 0; flat < 2; flat++) {
-    dea_fit_create(grid->order, flat ? 0 : grid->order_z, &w->to_nodes[flat]);
-    dea_fit_create_back(grid->order, flat ? 0 : grid->order_z, &w->back[flat]);
+    dea_fit_create(grid->order, flat ? 0 : grid->order_z, false, &w->to_nodes[flat]);
+    dea_fit_create(grid->order, flat ? 0 : grid->order_z, true, &w->back[flat]);
   }
   weigh_corners(w);
   return dea_arena_status(&w->memory);
