@@ -6,27 +6,33 @@
 
 #include <stdint.h>
 
-static inline struct dea_element element_of(enum dea_element_kind kind, const void *basis,
-                                            int nodes, int points, int pressures)
+static inline struct dea_element hex_of(enum dea_element_kind kind,
+                                        const struct dea_hex_shape *shape)
 {
-  return (struct dea_element){dea_element_types[kind], nodes, points, pressures,
-                              (void *)(uintptr_t)basis};
+  return (struct dea_element){
+      dea_element_types[kind],  shape->nodes,    shape->gauss,     shape->pressures,
+      (void *)(uintptr_t)shape, shape->value[0], DEA_HEX_NODES_MAX};
 }
 
 static inline struct dea_element hexahedron(const struct dea_hex_shape *shape)
 {
-  return element_of(DEA_ELEMENT_HEXAHEDRON, shape, shape->nodes, shape->gauss, shape->pressures);
+  return hex_of(DEA_ELEMENT_HEXAHEDRON, shape);
 }
 
 static inline struct dea_element potential_hexahedron(const struct dea_hex_shape *shape)
 {
-  return element_of(DEA_ELEMENT_POTENTIAL_HEXAHEDRON, shape, shape->nodes, shape->gauss,
-                    shape->pressures);
+  return hex_of(DEA_ELEMENT_POTENTIAL_HEXAHEDRON, shape);
 }
 
-static inline struct dea_element membrane(const struct dea_flat_shape *shape)
+static inline struct dea_element membrane(const struct dea_face_shape *shape)
 {
-  return element_of(DEA_ELEMENT_MEMBRANE, shape, shape->nodes, shape->gauss, 0);
+  return (struct dea_element){dea_element_types[DEA_ELEMENT_MEMBRANE],
+                              shape->nodes,
+                              shape->points,
+                              0,
+                              (void *)(uintptr_t)shape,
+                              shape->value[0],
+                              DEA_FACE_NODES_MAX};
 }
 
 static inline dea_status evaluate_hex(const struct dea_hex_shape *shape,
@@ -44,7 +50,7 @@ static inline dea_status evaluate_hex(const struct dea_hex_shape *shape,
   return element.type->evaluate(&element, &in, order, out);
 }
 
-static inline dea_status evaluate_membrane(const struct dea_flat_shape *shape,
+static inline dea_status evaluate_membrane(const struct dea_face_shape *shape,
                                            const struct dea_part_material *part_material,
                                            const double *X, const double *u, double voltage_V,
                                            enum dea_eval_order order,

@@ -88,11 +88,10 @@ static const struct {
 static struct dea_field parameter_field(const struct dea_shape_parameter *p, size_t index)
 {
   bool angle = p->unit == DEA_SHAPE_ANGLE;
-  bool zero = p->optional && p->default_value == 0;
   struct dea_field field = DEA_NUMBER_ROW(
       p->name, AT(value) + index * sizeof(struct dea_quantity), angle ? "radian" : "m",
       angle ? "45 degree" : "5 mm", p->doc, .required = !p->optional,
-      .default_text = zero ? (angle ? "0 degree" : "0 mm") : NULL);
+      .default_text = p->optional ? (angle ? "0 degree" : "0 mm") : NULL);
   if (p->unit == DEA_SHAPE_LENGTH) {
     field.max = 10;
     field.above_min = !p->optional;

@@ -36,8 +36,9 @@ static dea_status note_breakdown(struct dea_context *ctx, const struct dea_gener
                            material->name);
   }
   if (!material->breakdown.exponent_known && l_pre > 1) {
-    bool chosen = film->breakdown->origin != DEA_ABSENT;
-    return dea_finding_add(ctx, DEA_NOTE, chosen ? film->breakdown->location : film->name->location,
+    const struct dea_label *chosen = film->choice->breakdown;
+    return dea_finding_add(ctx, DEA_NOTE,
+                           (chosen->origin != DEA_ABSENT ? chosen : film->name)->location,
                            "the breakdown field of '%s', %g V/um, is that of unstretched film; it "
                            "usually grows with stretch, but by how much is unknown here and taken "
                            "as nothing, so breakdown margins at pre-stretch %g are pessimistic",
@@ -93,8 +94,8 @@ dea_status dea_generator_check_film_in_time(struct dea_context *ctx,
                                             const struct dea_generator_film *film)
 {
   const struct dea_material *material = film->material;
-  bool chosen = film->viscosity->origin != DEA_ABSENT;
-  struct dea_location location = chosen ? film->viscosity->location : film->name->location;
+  bool chosen = film->choice->viscosity->origin != DEA_ABSENT;
+  struct dea_location location = (chosen ? film->choice->viscosity : film->name)->location;
   if (design->drive.waveform == NULL && !dea_parts_in_time(design->parts)) {
     return DEA_OK;
   }

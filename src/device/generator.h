@@ -13,21 +13,20 @@ dea_status dea_generator_disc(struct dea_context *ctx, const struct dea_design *
 
 /* ---- for generators ---- */
 
-/* Names of parts of one kind: labels in a list of structs. */
-struct dea_part_names {
-  const char *what;  // "shape"
-  const char *first; // the label of the first one
-  size_t count, stride;
+/* Parts that others name. */
+enum dea_named {
+  DEA_NAMED_SHAPE,
+  DEA_NAMED_PLY,
+  DEA_NAMED_BODY,
+  DEA_NAMED_PRESSURE,
+  DEA_NAMED_CONTACT
 };
-#define DEA_PART_NAMES(what, items, count)                                                         \
-  {                                                                                                \
-    what, (const char *)&(items)->name, count, sizeof *(items)                                     \
-  }
 
 /* Number of the part with a name; DEA_LAYOUT_NONE after a finding at `location` that says which is
  * nearest, or which there are. */
-dea_status dea_part_find(struct dea_context *ctx, const struct dea_part_names *names,
-                         const char *name, struct dea_location location, size_t *out);
+dea_status dea_part_find(struct dea_context *ctx, const struct dea_parts *parts,
+                         enum dea_named kind, const char *name, struct dea_location location,
+                         size_t *out);
 
 /* Makes a region of each shape, in their order; the list is the layout's, and its length is set.
  * What is wrong is a finding at its place; a shape that could not be made, or is made of such a
@@ -45,10 +44,10 @@ dea_status dea_generator_material(struct dea_context *ctx, const struct dea_desi
 /* A sheet between electrodes, for the next two. */
 struct dea_generator_film {
   const struct dea_material *material;
-  const char *what;                              // it is, for messages: "the film"
-  const struct dea_label *name;                  // of the material
-  const struct dea_label *breakdown, *viscosity; // chosen sets
-  const double *pre_stretch;                     // [2]
+  const char *what;                         // it is, for messages: "the film"
+  const struct dea_label *name;             // of the material
+  const struct dea_material_choice *choice; // of its sets
+  const double *pre_stretch;                // [2]
   struct dea_location pre_stretch_place;
 };
 /* Adds findings where a material cannot be that of a dielectric, and on what is not known of it. */

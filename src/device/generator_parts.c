@@ -5,6 +5,7 @@
 #include "material/plane.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,33 +16,10 @@ struct maker {
   struct dea_layout *out;
 };
 
-#define PARTS_OF(what, items, counter)                                                             \
-  const struct dea_part_names names = DEA_PART_NAMES(what, m->parts->items, m->parts->counter);    \
-  return dea_part_find(m->ctx, &names, label->text, label->location, out)
-
-static dea_status find_shape(const struct maker *m, const struct dea_label *label, size_t *out)
+static dea_status find(const struct maker *m, enum dea_named kind, const struct dea_label *label,
+                       size_t *out)
 {
-  PARTS_OF("shape", shapes, shape_count);
-}
-
-static dea_status find_ply(const struct maker *m, const struct dea_label *label, size_t *out)
-{
-  PARTS_OF("ply", plies, ply_count);
-}
-
-static dea_status find_body(const struct maker *m, const struct dea_label *label, size_t *out)
-{
-  PARTS_OF("body", bodies, body_count);
-}
-
-static dea_status find_pressure(const struct maker *m, const struct dea_label *label, size_t *out)
-{
-  PARTS_OF("pressure", pressures, pressure_count);
-}
-
-static dea_status find_contact(const struct maker *m, const struct dea_label *label, size_t *out)
-{
-  PARTS_OF("contact", contacts, contact_count);
+  return dea_part_find(m->ctx, m->parts, kind, label->text, label->location, out);
 }
 
 /* A copy of a name, since a device outlives its design; NULL when the arena has failed. */
@@ -59,19 +37,16 @@ static double or_zero(const struct dea_quantity *value)
 
 // Plies ------------------------------------------------------------------------------------------
 
+static struct dea_material_choice choice_of(const struct dea_parts_ply *ply)
+{
+  return (struct dea_material_choice){&ply->law, &ply->permittivity, &ply->breakdown,
+                                      &ply->viscosity, NULL};
+}
+
 static dea_status resolve_ply(const struct maker *m, const struct dea_parts_ply *ply,
                               struct dea_material *out)
 {
-  const struct dea_material_choice choice = {
-      .law = ply->law.text,
-      .permittivity = ply->permittivity.text,
-      .breakdown = ply->breakdown.text,
-      .law_place = ply->law.location,
-      .permittivity_place = ply->permittivity.location,
-      .breakdown_place = ply->breakdown.location,
-      .viscosity = ply->viscosity.text,
-      .viscosity_place = ply->viscosity.location,
-  };
+  const struct dea_material_choice choice = choice_of(ply);
   dea_status status = dea_generator_material(m->ctx, m->design, &ply->material, &choice, out);
   if (status == DEA_E_DESIGN) { // a finding lets the other plies be checked
     return DEA_OK;
@@ -97,35 +72,24 @@ static dea_status check_reach(struct maker *m, const struct dea_parts_ply *from,
   return dea_generator_check_reach(m->ctx, &ply->material, what, ply->pre_stretch, place);
 }
 
-/* Memory for as many of a kind as the file has. */
-#define MAKE(member, member_count)                                                                 \
-  l->member = dea_arena_alloc(&l->memory, m->parts->member_count, sizeof *l->member);              \
-  DEA_TRY(m->ctx, dea_arena_status(&l->memory));                                                   \
-  l->member_count = m->parts->member_count
-
-static dea_status add_plies(struct maker *m)
+static dea_status add_ply(struct maker *m, size_t i)
 {
-  struct dea_layout *l = m->out;
-  MAKE(plies, ply_count);
-  for (size_t i = 0; i < l->ply_count; i++) {
-    const struct dea_parts_ply *from = &m->parts->plies[i];
-    struct dea_layout_ply *to = &l->plies[i];
-    double l1 = from->pre_stretch[0].si,
-           l2 = from->pre_stretch_count > 1 ? from->pre_stretch[1].si : l1;
-    to->name = keep(m, from->name.text);
-    to->layers = (size_t)from->layers.si;
-    to->thickness_unstretched_m = (double)to->layers * from->thickness_m.si;
-    to->thickness_m = to->thickness_unstretched_m / (l1 * l2);
-    to->pre_stretch[0] = l1;
-    to->pre_stretch[1] = l2;
-    to->angle_rad = from->angle_rad.si;
-    to->elements = from->elements.origin == DEA_ABSENT ? 0 : (size_t)from->elements.si;
-    to->location = from->name.location;
-    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
-    DEA_TRY(m->ctx, resolve_ply(m, from, &to->material));
-    DEA_TRY(m->ctx, check_reach(m, from, to));
-  }
-  return DEA_OK;
+  const struct dea_parts_ply *from = &m->parts->plies[i];
+  struct dea_layout_ply *to = &m->out->plies[i];
+  double l1 = from->pre_stretch[0].si,
+         l2 = from->pre_stretch_count > 1 ? from->pre_stretch[1].si : l1;
+  to->name = keep(m, from->name.text);
+  to->layers = (size_t)from->layers.si;
+  to->thickness_unstretched_m = (double)to->layers * from->thickness_m.si;
+  to->thickness_m = to->thickness_unstretched_m / (l1 * l2);
+  to->pre_stretch[0] = l1;
+  to->pre_stretch[1] = l2;
+  to->angle_rad = from->angle_rad.si;
+  to->elements = from->elements.origin == DEA_ABSENT ? 0 : (size_t)from->elements.si;
+  to->location = from->name.location;
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_SHAPE, &from->shape, &to->region));
+  DEA_TRY(m->ctx, resolve_ply(m, from, &to->material));
+  return check_reach(m, from, to);
 }
 
 /* Fits the breakdown fields to the layers' thicknesses and to the unstretched area between
@@ -150,12 +114,12 @@ static dea_status check_dielectrics(struct maker *m)
   bool any = false;
   for (size_t i = 0; i < m->out->ply_count; i++) {
     const struct dea_parts_ply *ply = &m->parts->plies[i];
+    const struct dea_material_choice choice = choice_of(ply);
     const struct dea_generator_film film = {
         .material = &m->out->plies[i].material,
         .what = "the dielectric between two electrodes",
         .name = &ply->material,
-        .breakdown = &ply->breakdown,
-        .viscosity = &ply->viscosity,
+        .choice = &choice,
         .pre_stretch = m->out->plies[i].pre_stretch,
         .pre_stretch_place = ply->pre_stretch[0].location,
     };
@@ -226,23 +190,24 @@ static dea_status add_channels(struct maker *m)
   return dea_arena_status(&l->memory);
 }
 
-static dea_status add_electrodes(struct maker *m)
+static dea_status add_electrode(struct maker *m, size_t i)
 {
-  struct dea_layout *l = m->out;
-  MAKE(electrodes, electrode_count);
-  for (size_t i = 0; i < l->electrode_count; i++) {
-    const struct dea_parts_electrode *from = &m->parts->electrodes[i];
-    struct dea_layout_electrode *to = &l->electrodes[i];
-    to->name = keep(m, from->name.origin == DEA_ABSENT ? from->channel.text : from->name.text);
-    to->top = from->side.value == DEA_SIDE_TOP;
-    to->sheet_resistance_ohm = from->sheet_resistance_ohm.si;
-    to->location = from->shape.location;
-    to->lead = from->lead_rad.origin != DEA_ABSENT;
-    to->lead_rad = to->lead ? from->lead_rad.si : 0;
-    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
-    DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
-    DEA_TRY(m->ctx, add_channel(m, &from->channel, &to->channel));
-  }
+  const struct dea_parts_electrode *from = &m->parts->electrodes[i];
+  struct dea_layout_electrode *to = &m->out->electrodes[i];
+  to->name = keep(m, from->name.origin == DEA_ABSENT ? from->channel.text : from->name.text);
+  to->top = from->side.value == DEA_SIDE_TOP;
+  to->sheet_resistance_ohm = from->sheet_resistance_ohm.si;
+  to->location = from->shape.location;
+  to->lead = from->lead_rad.origin != DEA_ABSENT;
+  to->lead_rad = to->lead ? from->lead_rad.si : 0;
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_SHAPE, &from->shape, &to->region));
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_PLY, &from->ply, &to->ply));
+  return add_channel(m, &from->channel, &to->channel);
+}
+
+static dea_status check_channels(struct maker *m)
+{
+  const struct dea_layout *l = m->out;
   for (size_t c = m->parts->channel_count > 0 ? 1 : l->channel_count; c < l->channel_count; c++) {
     size_t i = 0;
     while (i < l->electrode_count && l->electrodes[i].channel != c) {
@@ -295,24 +260,19 @@ static dea_status add_hold(const struct maker *m, const struct dea_parts_support
   return DEA_OK;
 }
 
-static dea_status add_supports(struct maker *m)
+static dea_status add_support(struct maker *m, size_t i)
 {
-  struct dea_layout *l = m->out;
-  MAKE(supports, support_count);
-  for (size_t i = 0; i < l->support_count; i++) {
-    const struct dea_parts_support *from = &m->parts->supports[i];
-    struct dea_layout_support *to = &l->supports[i];
-    to->edge = from->edge.origin != DEA_ABSENT;
-    const struct dea_label *shape = to->edge ? &from->edge : &from->shape;
-    to->within = DEA_LAYOUT_NONE;
-    to->location = shape->location;
-    DEA_TRY(m->ctx, find_shape(m, shape, &to->region));
-    if (from->within.origin != DEA_ABSENT) {
-      DEA_TRY(m->ctx, find_shape(m, &from->within, &to->within));
-    }
-    DEA_TRY(m->ctx, add_hold(m, from, to));
+  const struct dea_parts_support *from = &m->parts->supports[i];
+  struct dea_layout_support *to = &m->out->supports[i];
+  to->edge = from->edge.origin != DEA_ABSENT;
+  const struct dea_label *shape = to->edge ? &from->edge : &from->shape;
+  to->within = DEA_LAYOUT_NONE;
+  to->location = shape->location;
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_SHAPE, shape, &to->region));
+  if (from->within.origin != DEA_ABSENT) {
+    DEA_TRY(m->ctx, find(m, DEA_NAMED_SHAPE, &from->within, &to->within));
   }
-  return DEA_OK;
+  return add_hold(m, from, to);
 }
 
 static dea_status add_motion(const struct maker *m, const struct dea_parts_body *from,
@@ -338,25 +298,20 @@ static dea_status add_motion(const struct maker *m, const struct dea_parts_body 
   return DEA_OK;
 }
 
-static dea_status add_bodies(struct maker *m)
+static dea_status add_body(struct maker *m, size_t i)
 {
-  struct dea_layout *l = m->out;
-  MAKE(bodies, body_count);
-  for (size_t i = 0; i < l->body_count; i++) {
-    const struct dea_parts_body *from = &m->parts->bodies[i];
-    struct dea_layout_body *to = &l->bodies[i];
-    to->name = keep(m, from->name.text);
-    to->mass_kg = from->mass_kg.si;
-    to->location = from->name.location;
-    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
-    DEA_TRY(m->ctx, add_motion(m, from, to));
-  }
-  return DEA_OK;
+  const struct dea_parts_body *from = &m->parts->bodies[i];
+  struct dea_layout_body *to = &m->out->bodies[i];
+  to->name = keep(m, from->name.text);
+  to->mass_kg = from->mass_kg.si;
+  to->location = from->name.location;
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_SHAPE, &from->shape, &to->region));
+  return add_motion(m, from, to);
 }
 
 /* A spring's numbers, by whether its direction is a turn. */
-static dea_status add_spring(const struct maker *m, const struct dea_parts_spring *from,
-                             struct dea_layout_spring *to)
+static dea_status set_stiffness(const struct maker *m, const struct dea_parts_spring *from,
+                                struct dea_layout_spring *to)
 {
   bool turns = from->direction.value >= 3;
   const struct dea_quantity *right =
@@ -389,19 +344,14 @@ static dea_status add_spring(const struct maker *m, const struct dea_parts_sprin
   return DEA_OK;
 }
 
-static dea_status add_springs(struct maker *m)
+static dea_status add_spring(struct maker *m, size_t i)
 {
-  struct dea_layout *l = m->out;
-  MAKE(springs, spring_count);
-  for (size_t i = 0; i < l->spring_count; i++) {
-    const struct dea_parts_spring *from = &m->parts->springs[i];
-    struct dea_layout_spring *to = &l->springs[i];
-    to->component = from->direction.value;
-    to->location = from->body.location;
-    DEA_TRY(m->ctx, find_body(m, &from->body, &to->body));
-    DEA_TRY(m->ctx, add_spring(m, from, to));
-  }
-  return DEA_OK;
+  const struct dea_parts_spring *from = &m->parts->springs[i];
+  struct dea_layout_spring *to = &m->out->springs[i];
+  to->component = from->direction.value;
+  to->location = from->body.location;
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_BODY, &from->body, &to->body));
+  return set_stiffness(m, from, to);
 }
 
 /* What a pressure encloses. */
@@ -434,41 +384,31 @@ static dea_status add_enclosure(const struct maker *m, const struct dea_parts_pr
                                "encloses");
 }
 
-static dea_status add_pressures(struct maker *m)
+static dea_status add_pressure(struct maker *m, size_t i)
 {
-  struct dea_layout *l = m->out;
-  MAKE(pressures, pressure_count);
-  for (size_t i = 0; i < l->pressure_count; i++) {
-    const struct dea_parts_pressure *from = &m->parts->pressures[i];
-    struct dea_layout_pressure *to = &l->pressures[i];
-    to->top = from->side.value == DEA_SIDE_TOP;
-    to->name = keep(m, from->name.text);
-    to->pressure_Pa = from->pressure_Pa.si;
-    DEA_TRY(m->ctx, add_enclosure(m, from, to));
-    to->location = from->shape.location;
-    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
-    DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
-  }
-  return DEA_OK;
+  const struct dea_parts_pressure *from = &m->parts->pressures[i];
+  struct dea_layout_pressure *to = &m->out->pressures[i];
+  to->top = from->side.value == DEA_SIDE_TOP;
+  to->name = keep(m, from->name.text);
+  to->pressure_Pa = from->pressure_Pa.si;
+  DEA_TRY(m->ctx, add_enclosure(m, from, to));
+  to->location = from->shape.location;
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_SHAPE, &from->shape, &to->region));
+  return find(m, DEA_NAMED_PLY, &from->ply, &to->ply);
 }
 
-static dea_status add_contacts(struct maker *m)
+static dea_status add_contact(struct maker *m, size_t i)
 {
-  struct dea_layout *l = m->out;
-  MAKE(contacts, contact_count);
-  for (size_t i = 0; i < l->contact_count; i++) {
-    const struct dea_parts_contact *from = &m->parts->contacts[i];
-    struct dea_layout_contact *to = &l->contacts[i];
-    to->top = from->side.value == DEA_SIDE_TOP;
-    to->name = keep(m, from->name.text);
-    to->gap_m = or_zero(&from->gap_m);
-    to->location = from->shape.location;
-    to->with = DEA_LAYOUT_NONE;
-    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
-    DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
-    DEA_TRY(m->ctx, from->with.origin != DEA_ABSENT ? find_ply(m, &from->with, &to->with) : DEA_OK);
-  }
-  return DEA_OK;
+  const struct dea_parts_contact *from = &m->parts->contacts[i];
+  struct dea_layout_contact *to = &m->out->contacts[i];
+  to->top = from->side.value == DEA_SIDE_TOP;
+  to->name = keep(m, from->name.text);
+  to->gap_m = or_zero(&from->gap_m);
+  to->location = from->shape.location;
+  to->with = DEA_LAYOUT_NONE;
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_SHAPE, &from->shape, &to->region));
+  DEA_TRY(m->ctx, find(m, DEA_NAMED_PLY, &from->ply, &to->ply));
+  return from->with.origin != DEA_ABSENT ? find(m, DEA_NAMED_PLY, &from->with, &to->with) : DEA_OK;
 }
 
 // Monitors ---------------------------------------------------------------------------------------
@@ -492,11 +432,11 @@ static bool lies_there(const struct dea_layout *l, size_t ply, const struct dea_
   return true;
 }
 
-static dea_status add_ply(const struct maker *m, const struct dea_parts_monitor *from,
-                          struct dea_layout_monitor *to)
+static dea_status find_own_ply(const struct maker *m, const struct dea_parts_monitor *from,
+                               struct dea_layout_monitor *to)
 {
   if (from->ply.origin != DEA_ABSENT) {
-    return find_ply(m, &from->ply, &to->ply);
+    return find(m, DEA_NAMED_PLY, &from->ply, &to->ply);
   }
   to->ply = m->out->ply_count;
   while (to->ply > 0 && !lies_there(m->out, to->ply - 1, to)) {
@@ -511,28 +451,29 @@ static dea_status add_ply(const struct maker *m, const struct dea_parts_monitor 
   return DEA_OK;
 }
 
-static dea_status add_monitor(const struct maker *m, const struct dea_parts_monitor *from,
-                              struct dea_layout_monitor *to)
+static dea_status add_monitor(struct maker *m, size_t i)
 {
+  const struct dea_parts_monitor *from = &m->parts->monitors[i];
+  struct dea_layout_monitor *to = &m->out->monitors[i];
   to->name = keep(m, from->name.text);
   to->location = from->name.location;
   to->ply = to->region = to->body = to->pressure = to->contact = DEA_LAYOUT_NONE;
   if (from->body.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_BODY;
-    return find_body(m, &from->body, &to->body);
+    return find(m, DEA_NAMED_BODY, &from->body, &to->body);
   }
   if (from->pressure.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_VOLUME;
-    return find_pressure(m, &from->pressure, &to->pressure);
+    return find(m, DEA_NAMED_PRESSURE, &from->pressure, &to->pressure);
   }
   if (from->contact.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_CONTACT;
-    return find_contact(m, &from->contact, &to->contact);
+    return find(m, DEA_NAMED_CONTACT, &from->contact, &to->contact);
   }
   if (from->shape.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_REGION;
-    DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
-    return to->region != DEA_LAYOUT_NONE ? add_ply(m, from, to) : DEA_OK;
+    DEA_TRY(m->ctx, find(m, DEA_NAMED_SHAPE, &from->shape, &to->region));
+    return to->region != DEA_LAYOUT_NONE ? find_own_ply(m, from, to) : DEA_OK;
   }
   bool point = from->at_count > 0;
   to->kind = point ? DEA_MONITOR_POINT : DEA_MONITOR_LINE;
@@ -540,28 +481,54 @@ static dea_status add_monitor(const struct maker *m, const struct dea_parts_moni
     to->at_m[0][k] = point ? from->at_m[k].si : from->from_m[k].si;
     to->at_m[1][k] = point ? 0 : from->to_m[k].si;
   }
-  return add_ply(m, from, to);
-}
-
-static dea_status add_monitors(struct maker *m)
-{
-  struct dea_layout *l = m->out;
-  MAKE(monitors, monitor_count);
-  for (size_t i = 0; i < l->monitor_count; i++) {
-    DEA_TRY(m->ctx, add_monitor(m, &m->parts->monitors[i], &l->monitors[i]));
-  }
-  return DEA_OK;
+  return find_own_ply(m, from, to);
 }
 
 // All --------------------------------------------------------------------------------------------
 
+/* A list of the layout, made of one of the file; or what is done between two of them. */
+static const struct step {
+  size_t list, count, size; // places of the list and its length in the layout; of an item
+  size_t given;             // place of the length in the parts of the file
+  dea_status (*add)(struct maker *m, size_t i);
+  dea_status (*once)(struct maker *m); // NULL: a list
+} steps[] = {
+#define LIST(items, number, add)                                                                   \
+  {                                                                                                \
+    offsetof(struct dea_layout, items), offsetof(struct dea_layout, number),                       \
+        sizeof *((struct dea_layout *)NULL)->items, offsetof(struct dea_parts, number), add, NULL  \
+  }
+    LIST(plies, ply_count, add_ply),
+    {.once = add_channels},
+    LIST(electrodes, electrode_count, add_electrode),
+    {.once = check_channels},
+    LIST(supports, support_count, add_support),
+    LIST(bodies, body_count, add_body),
+    LIST(springs, spring_count, add_spring),
+    LIST(pressures, pressure_count, add_pressure),
+    LIST(contacts, contact_count, add_contact),
+    LIST(monitors, monitor_count, add_monitor),
+#undef LIST
+};
+
+static dea_status add_list(struct maker *m, const struct step *step)
+{
+  char *layout = (char *)m->out;
+  size_t count;
+  memcpy(&count, (const char *)m->parts + step->given, sizeof count);
+  void *items = dea_arena_alloc(&m->out->memory, count, step->size);
+  DEA_TRY(m->ctx, dea_arena_status(&m->out->memory));
+  memcpy(layout + step->list, &items, sizeof items);
+  memcpy(layout + step->count, &count, sizeof count);
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(m->ctx, step->add(m, i));
+  }
+  return dea_arena_status(&m->out->memory);
+}
+
 dea_status dea_generator_parts(struct dea_context *ctx, const struct dea_design *design,
                                struct dea_device *device)
 {
-  typedef dea_status (*add_fn)(struct maker *);
-  static const add_fn parts[] = {add_plies,     add_channels, add_electrodes,
-                                 add_supports,  add_bodies,   add_springs,
-                                 add_pressures, add_contacts, add_monitors};
   const double g = DEA_STANDARD_GRAVITY_M_PER_S2;
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   struct maker m = {.ctx = ctx, .design = design, .parts = design->parts};
@@ -572,9 +539,8 @@ dea_status dea_generator_parts(struct dea_context *ctx, const struct dea_design 
                                : device->gravity == DEA_GRAVITY_FIBRES_DOWN ? g
                                                                             : 0;
   DEA_TRY(ctx, dea_shape_regions_build(ctx, design, m.out));
-  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-    DEA_TRY(ctx, parts[i](&m));
-    DEA_TRY(ctx, dea_arena_status(&m.out->memory));
+  for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+    DEA_TRY(ctx, steps[i].once != NULL ? steps[i].once(&m) : add_list(&m, &steps[i]));
   }
   if (dea_finding_count(ctx, DEA_ERROR) > errors) {
     return DEA_OK; // where things lie says nothing then

@@ -15,29 +15,20 @@ double dea_length_stretched_m(const struct dea_inplane_length *length, double pr
 }
 
 /* The one of the three ways to say where the tips are that the design uses. */
-static const struct dea_quantity *tip_value(const struct dea_design *design)
+static const struct dea_inplane_length *given_tip(const struct dea_design *design)
 {
-  if (design->fibres.length.length.origin != DEA_ABSENT) {
-    return &design->fibres.length.length;
-  }
-  if (design->fibres.tip_radius.length.origin != DEA_ABSENT) {
-    return &design->fibres.tip_radius.length;
-  }
-  return &design->fibres.overlap.length;
+  return design->fibres.length.length.origin != DEA_ABSENT       ? &design->fibres.length
+         : design->fibres.tip_radius.length.origin != DEA_ABSENT ? &design->fibres.tip_radius
+                                                                 : &design->fibres.overlap;
 }
 
 static double tip_radius(const struct dea_design *design, const struct dea_device *device)
 {
-  const struct dea_quantity *given = tip_value(design);
-  if (given == &design->fibres.length.length) {
-    return device->frame_radius_m -
-           dea_length_stretched_m(&design->fibres.length, device->pre_stretch);
-  }
-  if (given == &design->fibres.tip_radius.length) {
-    return dea_length_stretched_m(&design->fibres.tip_radius, device->pre_stretch);
-  }
-  return device->electrode_radius_m -
-         dea_length_stretched_m(&design->fibres.overlap, device->pre_stretch);
+  const struct dea_inplane_length *given = given_tip(design);
+  const double length_m = dea_length_stretched_m(given, device->pre_stretch);
+  return given == &design->fibres.length       ? device->frame_radius_m - length_m
+         : given == &design->fibres.tip_radius ? length_m
+                                               : device->electrode_radius_m - length_m;
 }
 
 static void fill_fibres(const struct dea_design *design, struct dea_device *device)
@@ -143,7 +134,7 @@ static dea_status check_fibres(struct dea_context *ctx, const struct dea_design 
                                const struct dea_device *device)
 {
   double r_t = device->fibre_tip_radius_m, frame = device->frame_radius_m;
-  struct dea_location location = tip_value(design)->location;
+  struct dea_location location = given_tip(design)->length.location;
   if (device->fibre_width_m >= 2 * frame) {
     return dea_finding_add(ctx, DEA_ERROR, design->fibres.width_m.location,
                            "fibres of %.4g mm width do not fit into a frame of %.4g mm inner "

@@ -121,12 +121,14 @@ static bool is_at_place(void *self, const double at[2])
                          : on_device(e->layout, at);
 }
 
-/* Whether some of the boundary of a region lies on the device and, unless that is none, within
- * another region. */
-static bool edge_is_there(const struct dea_layout *l, size_t region, size_t within)
+/* Whether some of a support's edge lies on a part of the device, NULL: on any ply. */
+static bool edge_is_there(const struct dea_layout *l, const struct dea_layout_support *support,
+                          const struct dea_region *part)
 {
-  struct edge_place place = {.layout = l, .within = within};
-  return any_sample(region_of(l, region), is_at_place, &place);
+  const struct dea_region *r = region_of(l, support->region);
+  struct edge_place place = {l, support->within, part,
+                             10 * DEA_GEOMETRY_SNAP * dea_region_size_m(r)};
+  return any_sample(r, is_at_place, &place);
 }
 
 struct held_by {
@@ -328,7 +330,7 @@ static dea_status check_supports(struct dea_context *ctx, const struct dea_layou
 {
   for (size_t i = 0; i < l->support_count; i++) {
     const struct dea_layout_support *s = &l->supports[i];
-    bool there = s->edge ? edge_is_there(l, s->region, s->within)
+    bool there = s->edge ? edge_is_there(l, s, NULL)
                          : on_some_ply(l, s->region) &&
                                (s->within == DEA_LAYOUT_NONE || touch(l, s->region, s->within));
     if (!there) {
@@ -372,16 +374,6 @@ static dea_status unite_plies(struct dea_context *ctx, const struct dea_layout *
   return status;
 }
 
-/* Whether some of a support's edge lies on a part of the device. */
-static bool edge_meets(const struct dea_layout *l, const struct dea_layout_support *support,
-                       const struct dea_region *part)
-{
-  const struct dea_region *r = region_of(l, support->region);
-  struct edge_place place = {l, support->within, part,
-                             10 * DEA_GEOMETRY_SNAP * dea_region_size_m(r)};
-  return any_sample(r, is_at_place, &place);
-}
-
 /* Whether a region and a part of the device have an area in common, or it cannot be told. */
 static bool region_meets(const struct dea_layout *l, size_t region, const struct dea_region *part)
 {
@@ -399,8 +391,8 @@ static bool part_is_held(const struct dea_layout *l, const struct dea_region *pa
   bool held = false;
   for (size_t i = 0; i < l->support_count && !held; i++) {
     const struct dea_layout_support *s = &l->supports[i];
-    held =
-        s->components != 0 && (s->edge ? edge_meets(l, s, part) : region_meets(l, s->region, part));
+    held = s->components != 0 &&
+           (s->edge ? edge_is_there(l, s, part) : region_meets(l, s->region, part));
   }
   for (size_t i = 0; i < l->body_count && !held; i++) {
     held = region_meets(l, l->bodies[i].region, part);

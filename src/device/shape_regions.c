@@ -14,13 +14,21 @@ static const double pi = 3.14159265358979323846;
 
 // Names ------------------------------------------------------------------------------------------
 
-static const char *name_of(const struct dea_part_names *names, size_t i)
+/* Parts of one kind: a list of structs that begin with their name. */
+struct named {
+  const char *what;
+  const void *items;
+  size_t count, size;
+};
+
+static const char *name_of(const struct named *parts, size_t i)
 {
-  return ((const struct dea_label *)(const void *)(names->first + i * names->stride))->text;
+  const char *items = parts->items;
+  return ((const struct dea_label *)(const void *)(items + i * parts->size))->text;
 }
 
-static dea_status not_there(struct dea_context *ctx, const struct dea_part_names *names,
-                            const char *name, struct dea_location location)
+static dea_status not_there(struct dea_context *ctx, const struct named *names, const char *name,
+                            struct dea_location location)
 {
   struct dea_text list = {.ctx = ctx};
   const char **all = dea_alloc(ctx, names->count, sizeof *all);
@@ -44,9 +52,18 @@ static dea_status not_there(struct dea_context *ctx, const struct dea_part_names
   return status;
 }
 
-dea_status dea_part_find(struct dea_context *ctx, const struct dea_part_names *names,
-                         const char *name, struct dea_location location, size_t *out)
+dea_status dea_part_find(struct dea_context *ctx, const struct dea_parts *parts,
+                         enum dea_named kind, const char *name, struct dea_location location,
+                         size_t *out)
 {
+  const struct named all[] = {
+      {"shape", parts->shapes, parts->shape_count, sizeof *parts->shapes},
+      {"ply", parts->plies, parts->ply_count, sizeof *parts->plies},
+      {"body", parts->bodies, parts->body_count, sizeof *parts->bodies},
+      {"pressure", parts->pressures, parts->pressure_count, sizeof *parts->pressures},
+      {"contact", parts->contacts, parts->contact_count, sizeof *parts->contacts},
+  };
+  const struct named *names = &all[kind];
   for (*out = 0; *out < names->count; ++*out) {
     if (strcmp(name_of(names, *out), name) == 0) {
       return DEA_OK;
@@ -85,11 +102,10 @@ static dea_status build(struct maker *m, size_t number);
 static dea_status need(struct maker *m, const struct dea_parts_shape *shape, size_t which,
                        size_t *of)
 {
-  const struct dea_part_names names =
-      DEA_PART_NAMES("shape", m->parts->shapes, m->parts->shape_count);
   *of = DEA_LAYOUT_NONE;
   size_t found;
-  DEA_TRY(m->ctx, dea_part_find(m->ctx, &names, shape->of[which], shape->of_place[which], &found));
+  DEA_TRY(m->ctx, dea_part_find(m->ctx, m->parts, DEA_NAMED_SHAPE, shape->of[which],
+                                shape->of_place[which], &found));
   if (found == DEA_LAYOUT_NONE) {
     return DEA_OK;
   }

@@ -117,12 +117,6 @@ static dea_status find_circles(struct work *w)
 
 /* ---- nodes ---- */
 
-static double apart(const double a[2], const double b[2])
-{
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): nodes that were found have their points
-  return hypot(a[0] - b[0], a[1] - b[1]);
-}
-
 /* Angle from a to b about the centre of a piece, counter-clockwise, in (0, 2 pi]. */
 static double angle_between(const struct dea_piece *circle, const double a[2], const double b[2])
 {
@@ -134,17 +128,17 @@ static double angle_between(const struct dea_piece *circle, const double a[2], c
 static dea_status add_cut(struct work *w, size_t piece, const double x[2])
 {
   const struct dea_piece *p = &w->all.piece[piece];
-  size_t node;
-  DEA_TRY(w->ctx, dea_point_map_add(&w->node, x, &node));
+  size_t node = dea_point_map_add(&w->node, x);
+  DEA_TRY_MEMORY(!w->node.failed);
   DEA_TRY_STATUS(dea_array_grow(w->ctx, &w->cut, w->cut_count, &w->cut_room, sizeof *w->cut));
   const double *at = w->node.point[node];
-  double along = apart(p->from, at);
+  double along = dea_apart_m(p->from, at);
   if (p->arc) {
     along = p->sweep > 0 ? angle_between(p, p->from, at) : angle_between(p, at, p->from);
   }
-  if (apart(p->from, at) <= w->all.snap_m) {
+  if (dea_apart_m(p->from, at) <= w->all.snap_m) {
     along = 0;
-  } else if (apart(p->to, at) <= w->all.snap_m) {
+  } else if (dea_apart_m(p->to, at) <= w->all.snap_m) {
     along = INFINITY;
   }
   w->cut[w->cut_count++] = (struct cut){piece, node, along};
@@ -270,10 +264,11 @@ static dea_status add_edge(struct ring_writer *writer, size_t number)
   DEA_TRY(w->ctx, add_point(writer, w->node.point[clockwise ? edge->to : edge->from]));
   for (size_t k = 1; k < count; k++) {
     double x[2];
-    size_t known = w->chord.count, index;
+    size_t known = w->chord.count;
     chord_point(w, edge, clockwise ? count - k : k, count, x);
     DEA_TRY(w->ctx, add_point(writer, x));
-    DEA_TRY(w->ctx, dea_point_map_add(&w->chord, x, &index));
+    size_t index = dea_point_map_add(&w->chord, x);
+    DEA_TRY_MEMORY(!w->chord.failed);
     DEA_TRY_STATUS(dea_array_grow(w->ctx, &w->chord_edge, w->chord.count, &w->chord_room,
                                   sizeof *w->chord_edge));
     if (index == known) { // an arc that two pieces share is known from the first
@@ -323,6 +318,7 @@ static dea_status write_rings(struct work *w, const struct dea_region *region, s
 struct found {
   size_t node, circle, edge;
   double sweep; // signed; 0: a line
+  struct dea_location location;
 };
 
 /* One ring of the result being read. */
@@ -340,7 +336,7 @@ static bool find_node(struct reading *r, size_t i, size_t *node, size_t *edge)
   const double *x = r->point[i % r->count];
   *node = dea_point_map_find(&w->node, x);
   *edge = SIZE_MAX;
-  if (*node != SIZE_MAX && apart(w->node.point[*node], x) == 0) {
+  if (*node != SIZE_MAX && dea_apart_m(w->node.point[*node], x) == 0) {
     return true;
   }
   size_t chord = dea_point_map_find(&w->chord, x);
@@ -376,7 +372,7 @@ static size_t read_pieces(struct reading *r, struct found *pieces)
   }
   for (size_t i = first; i < first + r->count;) {
     find_node(r, i, &node, &edge);
-    struct found piece = {node, SIZE_MAX, SIZE_MAX, 0};
+    struct found piece = {.node = node, .circle = SIZE_MAX, .edge = SIZE_MAX};
     size_t next = SIZE_MAX, inner = SIZE_MAX;
     do { // over the points between nodes
       i++;
@@ -419,7 +415,7 @@ static bool goes_on(const struct work *w, const struct found *a, const struct fo
   const double *s = w->node.point[after->node];
   double cross = (q[0] - p[0]) * (s[1] - p[1]) - (q[1] - p[1]) * (s[0] - p[0]);
   double dot = (q[0] - p[0]) * (s[0] - q[0]) + (q[1] - p[1]) * (s[1] - q[1]);
-  return dot > 0 && fabs(cross) <= 1e-13 * w->all.size_m * apart(p, s);
+  return dot > 0 && fabs(cross) <= 1e-13 * w->all.size_m * dea_apart_m(p, s);
 }
 
 /* Makes one of pieces that go on; returns how many are left. */
@@ -461,7 +457,6 @@ static struct dea_location location_of(const struct work *w, const struct edge *
 struct ring_room {
   struct found *piece;
   struct dea_vertex *vertex;
-  struct dea_location *location;
 };
 
 /* Adds a ring of the result as a contour, counter-clockwise unless it is a hole; not one that is
@@ -473,14 +468,12 @@ static dea_status add_ring(struct reading *r, const struct edge *sorted, bool ho
   struct found *p = capacity->piece;
   size_t count = read_pieces(r, p);
   for (size_t i = 0; i < count; i++) { // before they are joined
-    capacity->location[i] = location_of(w, sorted, &p[i], p[(i + 1) % count].node);
-    p[i].edge = i;
+    p[i].location = location_of(w, sorted, &p[i], p[(i + 1) % count].node);
   }
   count = count > 0 ? join_pieces(w, p, count) : 0;
   for (size_t i = 0; i < count; i++) {
     const double *x = w->node.point[p[i].node];
-    capacity->vertex[i] =
-        (struct dea_vertex){x[0], x[1], tan(0.25 * p[i].sweep), capacity->location[p[i].edge]};
+    capacity->vertex[i] = (struct dea_vertex){x[0], x[1], tan(0.25 * p[i].sweep), p[i].location};
   }
   const struct dea_contour contour = {capacity->vertex, count, true};
   double area = count > 1 ? dea_contour_area_m2(&contour) : 0;
@@ -505,8 +498,7 @@ static dea_status read_rings(struct work *w, const struct dea_rings *rings, stru
   }
   struct edge *sorted = dea_arena_alloc(arena, w->edge_count, sizeof *sorted);
   const struct ring_room capacity = {dea_arena_alloc(arena, longest, sizeof *capacity.piece),
-                                     dea_arena_alloc(arena, longest, sizeof *capacity.vertex),
-                                     dea_arena_alloc(arena, longest, sizeof *capacity.location)};
+                                     dea_arena_alloc(arena, longest, sizeof *capacity.vertex)};
   DEA_TRY(w->ctx, dea_arena_status(arena));
   if (w->edge_count > 0) {
     memcpy(sorted, w->edge, w->edge_count * sizeof *sorted);
@@ -541,7 +533,9 @@ static dea_status attempt(struct work *w, enum dea_boolean what, const struct de
   at[1] = unknown != NULL ? unknown[1] : NAN;
   dea_arena_free(&arena);
   for (int i = 0; i < 3; i++) {
-    dea_rings_free(w->ctx, &rings[i]);
+    dea_free(w->ctx, rings[i].point);
+    dea_free(w->ctx, rings[i].end);
+    dea_free(w->ctx, rings[i].polygon);
   }
   dea_point_map_free(&w->chord);
   dea_free(w->ctx, w->chord_edge);

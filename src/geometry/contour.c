@@ -60,10 +60,8 @@ void dea_piece_point(const struct dea_piece *piece, double fraction, double out[
 void dea_piece_nearest(const struct dea_piece *piece, const double x_m[2], double out[2])
 {
   double dx = piece->to[0] - piece->from[0], dy = piece->to[1] - piece->from[1];
-  const double *end = hypot(x_m[0] - piece->from[0], x_m[1] - piece->from[1]) <
-                              hypot(x_m[0] - piece->to[0], x_m[1] - piece->to[1])
-                          ? piece->from
-                          : piece->to;
+  const double *end =
+      dea_apart_m(x_m, piece->from) < dea_apart_m(x_m, piece->to) ? piece->from : piece->to;
   out[0] = end[0];
   out[1] = end[1];
   if (piece->arc) {
@@ -85,7 +83,7 @@ double dea_piece_distance_m(const struct dea_piece *piece, const double x_m[2])
 {
   double at[2];
   dea_piece_nearest(piece, x_m, at);
-  return hypot(at[0] - x_m[0], at[1] - x_m[1]);
+  return dea_apart_m(at, x_m);
 }
 
 /* Both by Green's theorem: the polygon of the chords, seen from the first vertex so that nothing

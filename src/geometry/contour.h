@@ -6,6 +6,15 @@
 
 #include "base/context.h"
 
+#include <math.h>
+
+/* Distance of two points. */
+static inline double dea_apart_m(const double a[2], const double b[2])
+{
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): of points that were found
+  return hypot(a[0] - b[0], a[1] - b[1]);
+}
+
 struct dea_vertex {
   double x_m, y_m;
   double bulge; // tan of a quarter of the arc's angle to the next vertex; > 0: counter-clockwise,

@@ -14,8 +14,6 @@ dea_status dea_drawing_create(struct dea_context *ctx, const char *file,
   DEA_TRY_MEMORY(d != NULL);
   d->ctx = ctx;
   d->settings = settings != NULL ? *settings : (struct dea_drawing_settings){0};
-  d->settings.join_m = d->settings.join_m > 0 ? d->settings.join_m : 1e-6;
-  d->settings.fit_m = d->settings.fit_m > 0 ? d->settings.fit_m : 1e-7;
   if (d->settings.vertices_max == 0) {
     d->settings.vertices_max = DEA_DRAWING_VERTICES_MAX;
   }
@@ -52,40 +50,31 @@ dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, con
   return dea_fail(drawing->ctx, DEA_E_DESIGN, "%s:%zu: %s", drawing->file, line, text);
 }
 
-dea_status dea_drawing_reserve(struct dea_context *ctx, void **array, size_t count,
-                               size_t *capacity, size_t size)
+size_t dea_drawing_find_layer(const struct dea_drawing *drawing, const char *name)
 {
-  if (count < *capacity) {
-    return DEA_OK;
+  int (*compare)(const char *, const char *) = drawing->any_case ? strcasecmp : strcmp;
+  size_t layer = 0;
+  while (layer < drawing->layer_count && compare(drawing->layer[layer], name) != 0) {
+    layer++;
   }
-  size_t larger = *capacity + *capacity / 2 + 16;
-  void *moved = dea_resize(ctx, *array, larger, size);
-  DEA_TRY_MEMORY(moved != NULL);
-  *array = moved;
-  *capacity = larger;
-  return DEA_OK;
+  return layer;
 }
 
 dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size_t *layer)
 {
   struct dea_drawing *d = drawing;
-  for (size_t i = d->layer_count; i-- > 0;) {
-    if ((d->any_case ? strcasecmp : strcmp)(d->layer[i], name) == 0) {
-      *layer = i;
-      return DEA_OK;
-    }
+  *layer = dea_drawing_find_layer(d, name);
+  if (*layer < d->layer_count) {
+    return DEA_OK;
   }
   if (d->layer_count == DEA_DRAWING_LAYERS_MAX) {
     return dea_drawing_fault(d, 0, "the drawing has more than %d layers", DEA_DRAWING_LAYERS_MAX);
   }
-  void *names = d->layer;
-  DEA_TRY(d->ctx,
-          dea_drawing_reserve(d->ctx, &names, d->layer_count, &d->layer_room, sizeof *d->layer));
-  d->layer = names;
+  DEA_TRY_STATUS(
+      dea_array_grow(d->ctx, &d->layer, d->layer_count, &d->layer_room, sizeof *d->layer));
   const char *kept = dea_intern(d->ctx, name);
   DEA_TRY_MEMORY(kept != NULL);
-  d->layer[d->layer_count] = kept;
-  *layer = d->layer_count++;
+  d->layer[d->layer_count++] = kept;
   return DEA_OK;
 }
 
@@ -107,10 +96,7 @@ dea_status dea_drawing_end_path(struct dea_drawing *drawing, size_t layer, bool 
   if (closed && count > 2 && first->x_m == last->x_m && first->y_m == last->y_m) {
     d->vertex_count--;
   }
-  void *paths = d->path;
-  DEA_TRY(d->ctx,
-          dea_drawing_reserve(d->ctx, &paths, d->path_count, &d->path_room, sizeof *d->path));
-  d->path = paths;
+  DEA_TRY_STATUS(dea_array_grow(d->ctx, &d->path, d->path_count, &d->path_room, sizeof *d->path));
   d->path[d->path_count++] = (struct dea_drawing_path){layer, d->vertex_count, closed};
   return DEA_OK;
 }
@@ -128,10 +114,8 @@ dea_status dea_drawing_skip(struct dea_drawing *drawing, size_t layer, const cha
       return DEA_OK;
     }
   }
-  void *skipped = d->skipped;
-  DEA_TRY(d->ctx, dea_drawing_reserve(d->ctx, &skipped, d->skipped_count, &d->skipped_room,
-                                      sizeof *d->skipped));
-  d->skipped = skipped;
+  DEA_TRY_STATUS(
+      dea_array_grow(d->ctx, &d->skipped, d->skipped_count, &d->skipped_room, sizeof *d->skipped));
   d->skipped[d->skipped_count++] = entry;
   return DEA_OK;
 }

@@ -5,8 +5,6 @@
 
 /* 0 in a member: its default. */
 struct dea_drawing_settings {
-  double join_m;       // ends of lines nearer than this are joined; default 1 um
-  double fit_m;        // largest distance of curves from the arcs that they become; default 0.1 um
   double unit_m;       // of a file that does not say it
   size_t vertices_max; // of a drawing; default DEA_DRAWING_VERTICES_MAX
 };
@@ -16,6 +14,8 @@ enum {
   DEA_DRAWING_BYTES_MAX = 500000000,
   DEA_DRAWING_LAYERS_MAX = 1000,
 };
+
+#define DEA_DRAWING_JOIN_M 1e-6 // ends of lines nearer than this are joined
 
 /* x -> a x + c y + e, y -> b x + d y + f. */
 struct dea_affine {
@@ -84,7 +84,9 @@ dea_status dea_drawing_region(const struct dea_drawing *drawing, const char *lay
 dea_status dea_drawing_create(struct dea_context *ctx, const char *file,
                               const struct dea_drawing_settings *settings,
                               struct dea_drawing **out);
-/* Number of a layer, which is added when it is new. */
+/* Number of a layer; layer_count where there is none of that name. */
+size_t dea_drawing_find_layer(const struct dea_drawing *drawing, const char *name);
+/* The same; it is added when it is new. */
 dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size_t *layer);
 /* m after n. */
 struct dea_affine dea_affine_times(const struct dea_affine *m, const struct dea_affine *n);
@@ -118,9 +120,6 @@ dea_status dea_drawing_skip(struct dea_drawing *drawing, size_t layer, const cha
                             size_t line);
 /* Notes on what the reader assumed: `assumed` of a unit that the file does not say, and curves. */
 dea_status dea_drawing_add_notes(const struct dea_drawing *drawing, const char *assumed);
-/* Room for one more of `size` in an owned array of *room. */
-dea_status dea_drawing_reserve(struct dea_context *ctx, void **array, size_t count,
-                               size_t *capacity, size_t size);
 /* A finding at a line and DEA_E_DESIGN. */
 dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, const char *format,
                              ...) DEA_PRINTF(3, 4);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
+static const double fit_m = 1e-7; // largest distance of curves from the arcs that they become
 
 enum { SAMPLES = 16, DEPTH_MAX = 12 };
 
@@ -40,10 +41,8 @@ static dea_status add_vertex(struct dea_drawing *d, const double x_m[2])
                              "the drawing has more than %zu vertices, which is too many",
                              d->settings.vertices_max);
   }
-  void *vertices = d->vertex;
-  DEA_TRY(d->ctx, dea_drawing_reserve(d->ctx, &vertices, d->vertex_count, &d->vertex_room,
-                                      sizeof *d->vertex));
-  d->vertex = vertices;
+  DEA_TRY_STATUS(
+      dea_array_grow(d->ctx, &d->vertex, d->vertex_count, &d->vertex_room, sizeof *d->vertex));
   d->vertex[d->vertex_count++] =
       (struct dea_vertex){x_m[0], x_m[1], 0, {d->file, d->line, d->line > 0}};
   return DEA_OK;
@@ -107,7 +106,7 @@ static dea_status fit(struct dea_drawing *d, const struct curve *curve, const do
   double b[2] = {last[0] - middle[0], last[1] - middle[1]};
   double half = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]); // of the arc's angle
   double chord = hypot(a[0] + b[0], a[1] + b[1]), bulge = tan(0.5 * half);
-  bool straight = fabs(bulge) * chord < 0.01 * d->settings.fit_m;
+  bool straight = fabs(bulge) * chord < 0.01 * fit_m;
   ends[0].bulge = straight ? 0 : bulge;
   ends[1].x_m = last[0];
   ends[1].y_m = last[1];
@@ -117,7 +116,7 @@ static dea_status fit(struct dea_drawing *d, const struct curve *curve, const do
     worst = fmax(worst, chord > 0 ? dea_piece_distance_m(&piece, x[k])
                                   : hypot(x[k][0] - last[0], x[k][1] - last[1]));
   }
-  double near = d->settings.fit_m, quarters = fabs(half) / (0.25 * pi);
+  double near = fit_m, quarters = fabs(half) / (0.25 * pi);
   if (curve->cubic && depth == 0 && piece.arc && quarters < 1.05) {
     near = fmax(near, 4e-4 * piece.radius_m * pow(quarters, 6));
   }

@@ -1,18 +1,14 @@
+#define _POSIX_C_SOURCE 200809L // strcasecmp
 #include "base/file.h"
 #include "geometry/drawing.h"
 
-#include <ctype.h>
 #include <string.h>
+#include <strings.h>
 
 static bool ends_with(const char *file, const char *end)
 {
   size_t n = strlen(file), m = strlen(end);
-  for (size_t i = 0; i < m; i++) {
-    if (n < m || tolower((unsigned char)file[n - m + i]) != end[i]) {
-      return false;
-    }
-  }
-  return true;
+  return n >= m && strcasecmp(file + n - m, end) == 0;
 }
 
 dea_status dea_drawing_read(struct dea_context *ctx, const char *file,

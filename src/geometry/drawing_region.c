@@ -1,5 +1,4 @@
 /* A layer of a drawing as a region: ends of lines are joined, contours arranged. */
-#define _POSIX_C_SOURCE 200809L // strcasecmp
 #include "base/text.h"
 #include "geometry/contour_pieces.h"
 #include "geometry/drawing.h"
@@ -9,7 +8,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 /* An end of an open path: 2 path + 1 for its last vertex. */
 struct joiner {
@@ -70,7 +68,7 @@ static void add_contour(struct joiner *j, double snap, struct dea_region *out)
   double before = j->count > 0 ? chord(j, j->count - 1) : 0;
   for (size_t i = 0; i < j->count; i++) {
     double length = chord(j, i), beside = fmin(before, chord(j, i + 1));
-    bool tiny = length <= j->drawing->settings.join_m && length < 0.01 * beside;
+    bool tiny = length <= DEA_DRAWING_JOIN_M && length < 0.01 * beside;
     if (length > snap && !(tiny && fabs(j->contour[i].bulge) <= 1)) {
       j->keep[kept++] = j->contour[i];
     }
@@ -99,7 +97,7 @@ static dea_status open_fault(const struct joiner *j, size_t end)
   snprintf(what, sizeof what,
            "the contour is open (the nearest other end is %.3g mm away, ends within %.3g mm are "
            "joined)",
-           1e3 * nearest, 1e3 * d->settings.join_m);
+           1e3 * nearest, 1e3 * DEA_DRAWING_JOIN_M);
   return dea_region_fault(d->ctx, v->location, v->x_m, v->y_m, what);
 }
 
@@ -110,7 +108,7 @@ static bool is_tiny(const struct dea_drawing *d, size_t path)
   const struct dea_contour contour = {d->vertex + first, d->path[path].end - first, false};
   double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
   dea_contour_grow_box(&contour, box);
-  return hypot(box[2] - box[0], box[3] - box[1]) <= 2 * d->settings.join_m;
+  return hypot(box[2] - box[0], box[3] - box[1]) <= 2 * DEA_DRAWING_JOIN_M;
 }
 
 /* Ends of all open paths of a layer at their nodes, two at each. A path between one and the same
@@ -125,8 +123,8 @@ static dea_status find_ends(struct joiner *j, size_t layer)
       continue;
     }
     const struct dea_vertex *v = end_vertex(d, end);
-    size_t node;
-    DEA_TRY(d->ctx, dea_point_map_add(&j->node, (double[2]){v->x_m, v->y_m}, &node));
+    size_t node = dea_point_map_add(&j->node, (double[2]){v->x_m, v->y_m});
+    DEA_TRY_MEMORY(!j->node.failed);
     j->node_of[end] = node;
     if (end % 2 == 1 && j->node_of[end - 1] == node) {
       j->node_of[end - 1] = j->node_of[end] = SIZE_MAX;
@@ -195,19 +193,14 @@ static dea_status no_layer(const struct dea_drawing *d, const char *layer,
            d->layer_count > 0 ? dea_text_get(&names) : "none", near != NULL ? "; is '" : "",
            near != NULL ? near : "", near != NULL ? "' meant?" : "");
   dea_text_free(&names);
-  DEA_TRY(d->ctx, dea_finding_add(d->ctx, DEA_ERROR, asked, "%s", text));
-  return dea_fail(d->ctx, DEA_E_DESIGN, "%s", text);
+  return dea_refuse(d->ctx, asked, text);
 }
 
 dea_status dea_drawing_region(const struct dea_drawing *drawing, const char *layer,
                               struct dea_location asked, struct dea_region *out)
 {
   const struct dea_drawing *d = drawing;
-  size_t number = 0, ends = 2 * d->path_count;
-  int (*compare)(const char *, const char *) = d->any_case ? strcasecmp : strcmp;
-  while (number < d->layer_count && compare(d->layer[number], layer) != 0) {
-    number++;
-  }
+  size_t number = dea_drawing_find_layer(d, layer), ends = 2 * d->path_count;
   if (number == d->layer_count) {
     return no_layer(d, layer, asked);
   }
@@ -220,7 +213,7 @@ dea_status dea_drawing_region(const struct dea_drawing *drawing, const char *lay
     }
   }
   struct joiner j = {.drawing = d, .arena = {.ctx = d->ctx}};
-  j.node = (struct dea_point_map){.ctx = d->ctx, .tolerance_m = d->settings.join_m};
+  j.node = (struct dea_point_map){.ctx = d->ctx, .tolerance_m = DEA_DRAWING_JOIN_M};
   j.node_of = dea_arena_alloc(&j.arena, ends, sizeof *j.node_of);
   j.ends[0] = dea_arena_alloc(&j.arena, ends, sizeof *j.ends[0]);
   j.ends[1] = dea_arena_alloc(&j.arena, ends, sizeof *j.ends[1]);

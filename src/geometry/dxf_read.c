@@ -174,7 +174,7 @@ static dea_status number(struct reader *r, double *out)
 
 static dea_status add_to(struct reader *r, struct list *list, const void *item, size_t size)
 {
-  DEA_TRY(r->ctx, dea_drawing_reserve(r->ctx, &list->data, list->count, &list->capacity, size));
+  DEA_TRY_STATUS(dea_array_grow(r->ctx, &list->data, list->count, &list->capacity, size));
   memcpy((char *)list->data + list->count++ * size, item, size);
   return DEA_OK;
 }
@@ -204,7 +204,7 @@ static long whole(const struct reader *r, long code, long absent)
 
 static bool is_level(const struct reader *r, double low, double high)
 {
-  return fabs(high - low) * r->drawing->unit_m <= r->drawing->settings.join_m;
+  return fabs(high - low) * r->drawing->unit_m <= DEA_DRAWING_JOIN_M;
 }
 
 static dea_status skip(struct reader *r, const char *why)

@@ -10,7 +10,7 @@ struct near {
 
 static void keep_nearest(struct near *best, const double p[2], const double q[2])
 {
-  double distance = hypot(p[0] - q[0], p[1] - q[1]);
+  double distance = dea_apart_m(p, q);
   if (distance < best->distance) {
     *best = (struct near){distance, {p[0], p[1]}, {q[0], q[1]}};
   }
@@ -18,59 +18,15 @@ static void keep_nearest(struct near *best, const double p[2], const double q[2]
 
 /* From a point that may be on a to the nearest one of b. */
 static void try_from(struct near *best, const struct dea_piece *a, const struct dea_piece *b,
-                     double x, double y)
+                     const double start[2])
 {
-  double start[2] = {x, y}, p[2], q[2];
+  double p[2], q[2];
   dea_piece_nearest(a, start, p);
   dea_piece_nearest(b, p, q);
   keep_nearest(best, p, q);
 }
 
-static void try_line_circle(struct near *best, const struct dea_piece *line,
-                            const struct dea_piece *arc)
-{
-  double t[2];
-  dea_piece_tangent(line, false, t);
-  double px = line->from[0] - arc->centre[0], py = line->from[1] - arc->centre[1];
-  double along = -(px * t[0] + py * t[1]), off = px * t[1] - py * t[0];
-  double rest = arc->radius_m * arc->radius_m - off * off;
-  for (int k = -1; k <= 1; k++) { // the foot of the perpendicular lies between the crossings
-    double s = along + (rest > 0 ? k * sqrt(rest) : 0);
-    try_from(best, line, arc, line->from[0] + s * t[0], line->from[1] + s * t[1]);
-  }
-}
-
-static void try_circles(struct near *best, const struct dea_piece *a, const struct dea_piece *b)
-{
-  double dx = b->centre[0] - a->centre[0], dy = b->centre[1] - a->centre[1], d = hypot(dx, dy);
-  if (d == 0) {
-    return;
-  }
-  double along = 0.5 * (d + (a->radius_m * a->radius_m - b->radius_m * b->radius_m) / d);
-  double rest = a->radius_m * a->radius_m - along * along;
-  for (int k = -1; k <= 1; k += 2) {
-    double x = a->radius_m * k, across = k * sqrt(rest > 0 ? rest : 0);
-    try_from(best, a, b, a->centre[0] + x * dx / d, a->centre[1] + x * dy / d);
-    if (rest > 0) {
-      try_from(best, a, b, a->centre[0] + (along * dx - across * dy) / d,
-               a->centre[1] + (along * dy + across * dx) / d);
-    }
-  }
-}
-
-static void try_lines(struct near *best, const struct dea_piece *a, const struct dea_piece *b)
-{
-  double ta[2], tb[2];
-  dea_piece_tangent(a, false, ta);
-  dea_piece_tangent(b, false, tb);
-  double cross = ta[0] * tb[1] - ta[1] * tb[0];
-  if (cross != 0) {
-    double s = ((b->from[0] - a->from[0]) * tb[1] - (b->from[1] - a->from[1]) * tb[0]) / cross;
-    try_from(best, a, b, a->from[0] + s * ta[0], a->from[1] + s * ta[1]);
-  }
-}
-
-/* p on a, q on b. */
+/* p on a, q on b: from their ends, where they cross, and along the lines through the centres. */
 static struct near nearest(const struct dea_piece *a, const struct dea_piece *b)
 {
   struct near best = {.distance = INFINITY};
@@ -78,16 +34,21 @@ static struct near nearest(const struct dea_piece *a, const struct dea_piece *b)
     best = nearest(b, a);
     return (struct near){best.distance, {best.q[0], best.q[1]}, {best.p[0], best.p[1]}};
   }
-  try_from(&best, a, b, a->from[0], a->from[1]);
-  try_from(&best, a, b, a->to[0], a->to[1]);
-  try_from(&best, a, b, b->from[0], b->from[1]);
-  try_from(&best, a, b, b->to[0], b->to[1]);
-  if (a->arc && b->arc) {
-    try_circles(&best, a, b);
-  } else if (b->arc) {
-    try_line_circle(&best, a, b);
-  } else {
-    try_lines(&best, a, b);
+  const double *ends[4] = {a->from, a->to, b->from, b->to};
+  for (int k = 0; k < 4; k++) {
+    try_from(&best, a, b, ends[k]);
+  }
+  double at[2][2];
+  int count = dea_piece_crossings(a, b, 0, at);
+  for (int k = 0; k < count; k++) {
+    try_from(&best, a, b, at[k]);
+  }
+  if (b->arc) {
+    try_from(&best, a, b, b->centre);
+  }
+  if (a->arc) { // and away from it
+    try_from(&best, a, b,
+             (double[2]){2 * a->centre[0] - b->centre[0], 2 * a->centre[1] - b->centre[1]});
   }
   return best;
 }

@@ -38,8 +38,7 @@ static bool trim(struct dea_piece *a, struct dea_piece *b, const double corner[2
   if (count == 0) {
     return false;
   }
-  if (count == 2 && hypot(at[1][0] - corner[0], at[1][1] - corner[1]) <
-                        hypot(at[0][0] - corner[0], at[0][1] - corner[1])) {
+  if (count == 2 && dea_apart_m(at[1], corner) < dea_apart_m(at[0], corner)) {
     best = 1;
   }
   memcpy(a->to, at[best], sizeof a->to);

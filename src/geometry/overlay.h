@@ -13,12 +13,10 @@ struct dea_rings {
   size_t count;
 };
 
-void dea_rings_free(struct dea_context *ctx, struct dea_rings *rings);
-
 struct dea_overlay_type {
   /* The polygons of a may overlap, and so may those of b: their union is meant. What in the result
-   * is no polygon is left out. out: owned by the caller. DEA_E_DESIGN with GEOS' words when it does
-   * not take the polygons. */
+   * is no polygon is left out. out: owned by the caller, also after a failure. DEA_E_DESIGN with
+   * GEOS' words when it does not take the polygons. */
   dea_status (*overlay)(struct dea_context *ctx, enum dea_boolean what, const struct dea_rings *a,
                         const struct dea_rings *b, struct dea_rings *out);
 };

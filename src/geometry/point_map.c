@@ -54,18 +54,19 @@ static void insert(struct dea_point_map *map, size_t i)
   map->head[h] = i;
 }
 
-static dea_status grow(struct dea_point_map *map)
+static void grow(struct dea_point_map *map)
 {
   size_t capacity = map->capacity == 0 ? 64 : 2 * map->capacity;
   double(*point)[2] = dea_resize(map->ctx, map->point, capacity, sizeof *point);
-  DEA_TRY_MEMORY(point != NULL);
-  map->point = point;
+  map->point = point != NULL ? point : map->point;
   size_t *next = dea_resize(map->ctx, map->next, capacity, sizeof *next);
-  DEA_TRY_MEMORY(next != NULL);
-  map->next = next;
+  map->next = next != NULL ? next : map->next;
   size_t *head = dea_resize(map->ctx, map->head, capacity, sizeof *head);
-  DEA_TRY_MEMORY(head != NULL);
-  map->head = head;
+  map->head = head != NULL ? head : map->head;
+  map->failed = point == NULL || next == NULL || head == NULL;
+  if (map->failed) {
+    return;
+  }
   map->capacity = map->heads = capacity;
   for (size_t h = 0; h < map->heads; h++) {
     map->head[h] = SIZE_MAX;
@@ -73,21 +74,24 @@ static dea_status grow(struct dea_point_map *map)
   for (size_t i = 0; i < map->count; i++) {
     insert(map, i);
   }
-  return DEA_OK;
 }
 
-dea_status dea_point_map_add(struct dea_point_map *map, const double x_m[2], size_t *index)
+size_t dea_point_map_add(struct dea_point_map *map, const double x_m[2])
 {
-  *index = dea_point_map_find(map, x_m);
-  if (*index != SIZE_MAX) {
-    return DEA_OK;
+  size_t index = dea_point_map_find(map, x_m);
+  if (index != SIZE_MAX) {
+    return index;
   }
-  DEA_TRY(map->ctx, map->count == map->capacity ? grow(map) : DEA_OK);
+  if (map->count == map->capacity) {
+    grow(map);
+  }
+  if (map->failed) {
+    return 0;
+  }
   map->point[map->count][0] = x_m[0];
   map->point[map->count][1] = x_m[1];
   insert(map, map->count);
-  *index = map->count++;
-  return DEA_OK;
+  return map->count++;
 }
 
 void dea_point_map_free(struct dea_point_map *map)

@@ -3,34 +3,22 @@
 #include <math.h>
 #include <string.h>
 
-/* Room for `count` elements of an array that holds `used`; false on failure. */
-static bool reserve(struct dea_region *region, void **array, size_t used, size_t count,
-                    size_t *capacity, size_t size)
+/* Room for so many elements in an array; false on failure. */
+static bool reserve(struct dea_region *region, void *array, size_t count, size_t *capacity,
+                    size_t size)
 {
-  if (count <= *capacity - used) {
-    return true;
+  while (*capacity < count && !region->failed) {
+    region->failed = dea_array_grow(region->ctx, array, *capacity, capacity, size) != DEA_OK;
   }
-  size_t larger = used + count + used / 2 + 4;
-  void *moved = dea_resize(region->ctx, *array, larger, size);
-  if (moved == NULL) {
-    region->failed = true;
-    return false;
-  }
-  *array = moved;
-  *capacity = larger;
-  return true;
+  return !region->failed;
 }
 
 void dea_region_add(struct dea_region *region, const struct dea_vertex *vertices, size_t count)
 {
-  void *vertex = region->vertex, *end = region->end;
-  bool good = !region->failed && reserve(region, &vertex, region->vertex_count, count,
-                                         &region->vertex_room, sizeof *region->vertex);
-  region->vertex = vertex;
-  good = good && reserve(region, &end, region->contour_count, 1, &region->contour_room,
-                         sizeof *region->end);
-  region->end = end;
-  if (good) {
+  if (reserve(region, &region->vertex, region->vertex_count + count, &region->vertex_room,
+              sizeof *region->vertex) &&
+      reserve(region, &region->end, region->contour_count + 1, &region->contour_room,
+              sizeof *region->end)) {
     memcpy(region->vertex + region->vertex_count, vertices, count * sizeof *vertices);
     region->vertex_count += count;
     region->end[region->contour_count++] = region->vertex_count;

@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 static const char crosses_itself[] = "the contour crosses or touches itself";
@@ -24,11 +23,6 @@ dea_status dea_region_fault(struct dea_context *ctx, struct dea_location locatio
   return dea_fail(ctx, DEA_E_DESIGN, "%s%s", what, place);
 }
 
-static double apart(const double a[2], const double b[2])
-{
-  return hypot(a[0] - b[0], a[1] - b[1]);
-}
-
 /* Two pieces that are looked at together, and what is found. */
 struct pair {
   const struct dea_pieces *all;
@@ -42,13 +36,13 @@ struct pair {
 
 static bool is_end(const struct dea_piece *p, const double x[2], double snap)
 {
-  return apart(p->from, x) <= snap || apart(p->to, x) <= snap;
+  return dea_apart_m(p->from, x) <= snap || dea_apart_m(p->to, x) <= snap;
 }
 
 static void add_meeting(struct pair *p, const double x[2], bool across)
 {
   for (int k = 0; k < p->count; k++) {
-    if (apart(p->meet[k], x) <= 2 * p->snap) {
+    if (dea_apart_m(p->meet[k], x) <= 2 * p->snap) {
       return;
     }
   }
@@ -81,8 +75,8 @@ static void find_meetings(struct pair *p)
 static const double *find_own_crossing(const struct pair *p)
 {
   for (int k = 0; k < p->count; k++) {
-    bool joint = (p->all->next[p->i] == p->j && apart(p->meet[k], p->a->to) <= p->snap) ||
-                 (p->all->next[p->j] == p->i && apart(p->meet[k], p->b->to) <= p->snap);
+    bool joint = (p->all->next[p->i] == p->j && dea_apart_m(p->meet[k], p->a->to) <= p->snap) ||
+                 (p->all->next[p->j] == p->i && dea_apart_m(p->meet[k], p->b->to) <= p->snap);
     if (!joint) {
       return p->meet[k];
     }
@@ -93,11 +87,11 @@ static const double *find_own_crossing(const struct pair *p)
 /* How far along a piece a point of it lies, as dea_piece_point counts. */
 static double fraction_of(const struct dea_piece *p, const double x[2], double snap)
 {
-  if (apart(p->from, x) <= snap || apart(p->to, x) <= snap) {
-    return apart(p->from, x) <= snap ? 0 : 1;
+  if (dea_apart_m(p->from, x) <= snap || dea_apart_m(p->to, x) <= snap) {
+    return dea_apart_m(p->from, x) <= snap ? 0 : 1;
   }
   if (!p->arc) {
-    return apart(p->from, x) / p->length_m;
+    return dea_apart_m(p->from, x) / p->length_m;
   }
   double along =
       (atan2(x[1] - p->centre[1], x[0] - p->centre[0]) - p->start) * (p->sweep > 0 ? 1 : -1);
@@ -137,9 +131,9 @@ static struct dea_contour contour_of(const struct dea_pieces *all, size_t piece)
 static bool goes_through(const struct pair *p, const double x[2])
 {
   size_t before = p->i, after = p->i;
-  if (apart(p->a->to, x) <= p->snap) {
+  if (dea_apart_m(p->a->to, x) <= p->snap) {
     after = p->all->next[p->i];
-  } else if (apart(p->a->from, x) <= p->snap) {
+  } else if (dea_apart_m(p->a->from, x) <= p->snap) {
     while (p->all->next[before] != p->i) {
       before = p->all->next[before];
     }
@@ -147,7 +141,8 @@ static bool goes_through(const struct pair *p, const double x[2])
   double sides[2][2];
   for (int k = 0; k < 2; k++) {
     const struct dea_piece *piece = &p->all->piece[k == 0 ? before : after];
-    double part = apart(piece->from, x) / (apart(piece->from, x) + apart(piece->to, x));
+    double part =
+        dea_apart_m(piece->from, x) / (dea_apart_m(piece->from, x) + dea_apart_m(piece->to, x));
     part += k == 0 ? -1e-3 : 1e-3; // along from its start, near enough
     dea_piece_point(piece, part < 0 ? 0 : part > 1 ? 1 : part, sides[k]);
     if (dea_piece_distance_m(p->b, sides[k]) <= p->snap) {
@@ -159,11 +154,21 @@ static bool goes_through(const struct pair *p, const double x[2])
          dea_contour_inside(&other, sides[1][0], sides[1][1]);
 }
 
+/* What is looked at: all pieces, those of one contour with each other, or only where these cross
+ * and not at an end of either. */
+enum check { ALL, EACH_ALONE, CROSSINGS };
+
 /* What is wrong with two pieces; NULL when nothing is. */
-static const char *check_pair(struct pair *p, const double **where)
+static const char *check_pair(struct pair *p, enum check check, const double **where)
 {
   find_meetings(p);
-  if (p->count == 0) {
+  for (int k = 0; k < p->count && check == CROSSINGS; k++) {
+    if (p->inner[k]) {
+      *where = p->meet[k];
+      return crosses_itself;
+    }
+  }
+  if (p->count == 0 || check == CROSSINGS) {
     return NULL;
   }
   if (p->all->contour[p->i] == p->all->contour[p->j]) {
@@ -183,45 +188,21 @@ static const char *check_pair(struct pair *p, const double **where)
   return NULL;
 }
 
-/* The first two pieces that cross, not at an end of either, with that place as meet[0]; count is 0
- * where there are none. */
-static struct pair find_crossing(const struct dea_pieces *all)
+static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *all,
+                              enum check check)
 {
   for (size_t i = 0; i < all->count; i++) {
     double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     dea_piece_grow_box(&all->piece[i], box);
     size_t cursor = 0, j;
     while (dea_pieces_next(all, box, &cursor, &j)) {
-      struct pair pair = {.all = all, .i = i, .j = j, .a = &all->piece[i], .b = &all->piece[j]};
-      pair.snap = all->snap_m;
-      if (j > i) {
-        find_meetings(&pair);
-      }
-      for (int k = 0; k < pair.count; k++) {
-        if (pair.inner[k]) {
-          memcpy(pair.meet[0], pair.meet[k], sizeof pair.meet[0]);
-          return pair;
-        }
-      }
-    }
-  }
-  return (struct pair){.count = 0};
-}
-
-static dea_status check_pairs(struct dea_context *ctx, const struct dea_pieces *all, bool apart_too)
-{
-  for (size_t i = 0; i < all->count; i++) {
-    double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    dea_piece_grow_box(&all->piece[i], box);
-    size_t cursor = 0, j;
-    while (dea_pieces_next(all, box, &cursor, &j)) {
-      if (j <= i || (!apart_too && all->contour[i] != all->contour[j])) {
+      if (j <= i || (check == EACH_ALONE && all->contour[i] != all->contour[j])) {
         continue;
       }
       struct pair pair = {.all = all, .i = i, .j = j, .a = &all->piece[i], .b = &all->piece[j]};
       pair.snap = all->snap_m;
       const double *at = NULL;
-      const char *what = check_pair(&pair, &at);
+      const char *what = check_pair(&pair, check, &at);
       if (what != NULL) {
         return dea_region_fault(ctx, all->start[i].location, at[0], at[1], what);
       }
@@ -244,17 +225,13 @@ static dea_status report_no_area(struct dea_context *ctx, const struct dea_conto
   dea_region_add(&alone, contour->vertex, contour->count);
   dea_status status = dea_region_status(&alone);
   status = status == DEA_OK ? dea_pieces_build(ctx, &of, 1, &all) : status;
-  if (status == DEA_OK) {
-    const struct pair crossing = find_crossing(&all);
-    status = crossing.count > 0
-                 ? dea_region_fault(ctx, all.start[crossing.i].location, crossing.meet[0][0],
-                                    crossing.meet[0][1], crosses_itself)
-                 : dea_region_fault(ctx, first->location, first->x_m, first->y_m,
-                                    "a contour encloses no area");
-    dea_pieces_free(&all);
-  }
   dea_region_free(&alone);
-  return status;
+  DEA_TRY(ctx, status);
+  status = check_pairs(ctx, &all, CROSSINGS);
+  dea_pieces_free(&all);
+  DEA_TRY(ctx, status);
+  return dea_region_fault(ctx, first->location, first->x_m, first->y_m,
+                          "a contour encloses no area");
 }
 
 dea_status dea_region_check(struct dea_context *ctx, const struct dea_region *region,
@@ -281,7 +258,7 @@ dea_status dea_region_check(struct dea_context *ctx, const struct dea_region *re
   }
   struct dea_pieces all;
   DEA_TRY(ctx, dea_pieces_build(ctx, &region, 1, &all));
-  dea_status status = check_pairs(ctx, &all, apart_too);
+  dea_status status = check_pairs(ctx, &all, apart_too ? ALL : EACH_ALONE);
   dea_pieces_free(&all);
   return status;
 }

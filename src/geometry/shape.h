@@ -6,15 +6,14 @@
 
 enum dea_shape_unit {
   DEA_SHAPE_POSITION, // [m], of any sign
-  DEA_SHAPE_LENGTH,   // [m], > 0, or >= 0 where it has a default
+  DEA_SHAPE_LENGTH,   // [m], > 0, or >= 0 of an optional one
   DEA_SHAPE_ANGLE,    // [rad], counter-clockwise from the x axis
 };
 
 struct dea_shape_parameter {
   const char *name; // "inner_radius"
   enum dea_shape_unit unit;
-  bool optional;        // then it is `value` when it is not given
-  double default_value; // SI
+  bool optional; // then it is 0 when it is not given
   const char *doc;
 };
 

@@ -132,7 +132,7 @@ static dea_status add_strip(struct dea_region *region, const double *value,
 }
 
 static const struct dea_shape_parameter strip[] = {
-    {"width", DEA_SHAPE_LENGTH, false, 0, "across the line"}};
+    {"width", DEA_SHAPE_LENGTH, false, "across the line"}};
 
 const struct dea_shape_type dea_shape_strip = {
     .name = "strip",

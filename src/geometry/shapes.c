@@ -15,9 +15,9 @@ static const double pi = 3.14159265358979323846;
       .add = add_##id,                                                                             \
   }
 #define CENTRE                                                                                     \
-  {"x", DEA_SHAPE_POSITION, true, 0, "of the centre"},                                             \
+  {"x", DEA_SHAPE_POSITION, true, "of the centre"},                                                \
   {                                                                                                \
-    "y", DEA_SHAPE_POSITION, true, 0, "of the centre"                                              \
+    "y", DEA_SHAPE_POSITION, true, "of the centre"                                                 \
   }
 
 #define ADD(id)                                                                                    \
@@ -26,7 +26,7 @@ static const double pi = 3.14159265358979323846;
 #define NO_POINTS ((void)point, (void)count)
 
 static const struct dea_shape_parameter circle[] = {
-    CENTRE, {"radius", DEA_SHAPE_LENGTH, false, 0, "of the disc"}};
+    CENTRE, {"radius", DEA_SHAPE_LENGTH, false, "of the disc"}};
 
 ADD(circle)
 {
@@ -39,8 +39,8 @@ SHAPE(circle, "a disc", circle);
 
 static const struct dea_shape_parameter ring[] = {
     CENTRE,
-    {"inner_radius", DEA_SHAPE_LENGTH, false, 0, "of the hole"},
-    {"outer_radius", DEA_SHAPE_LENGTH, false, 0, "of the outline"}};
+    {"inner_radius", DEA_SHAPE_LENGTH, false, "of the hole"},
+    {"outer_radius", DEA_SHAPE_LENGTH, false, "of the outline"}};
 
 /* What is wrong with the numbers of a shape: no place in the plane is. */
 static dea_status fault(const struct dea_region *region, struct dea_location location,
@@ -64,10 +64,10 @@ SHAPE(ring, "a disc with a hole in its middle", ring);
 
 static const struct dea_shape_parameter sector[] = {
     CENTRE,
-    {"inner_radius", DEA_SHAPE_LENGTH, true, 0, "of what is missing at the tip"},
-    {"outer_radius", DEA_SHAPE_LENGTH, false, 0, "of the arc"},
-    {"start", DEA_SHAPE_ANGLE, false, 0, "direction of the first side"},
-    {"end", DEA_SHAPE_ANGLE, false, 0, "direction of the other side, counter-clockwise from it"}};
+    {"inner_radius", DEA_SHAPE_LENGTH, true, "of what is missing at the tip"},
+    {"outer_radius", DEA_SHAPE_LENGTH, false, "of the arc"},
+    {"start", DEA_SHAPE_ANGLE, false, "direction of the first side"},
+    {"end", DEA_SHAPE_ANGLE, false, "direction of the other side, counter-clockwise from it"}};
 
 /* An arc about c from an angle over `sweep`, in two halves so that no bulge is large. */
 static size_t add_arc(struct dea_vertex *v, const double *c, double radius, double from,
@@ -114,8 +114,8 @@ SHAPE(sector, "a part of a disc or ring between two directions", sector);
 
 static const struct dea_shape_parameter rectangle[] = {
     CENTRE,
-    {"width", DEA_SHAPE_LENGTH, false, 0, "along x"},
-    {"height", DEA_SHAPE_LENGTH, false, 0, "along y"}};
+    {"width", DEA_SHAPE_LENGTH, false, "along x"},
+    {"height", DEA_SHAPE_LENGTH, false, "along y"}};
 
 ADD(rectangle)
 {
@@ -133,9 +133,9 @@ SHAPE(rectangle, "a rectangle with its sides along the axes", rectangle);
 
 static const struct dea_shape_parameter rounded_rectangle[] = {
     CENTRE,
-    {"width", DEA_SHAPE_LENGTH, false, 0, "along x"},
-    {"height", DEA_SHAPE_LENGTH, false, 0, "along y"},
-    {"radius", DEA_SHAPE_LENGTH, false, 0, "of its corners"}};
+    {"width", DEA_SHAPE_LENGTH, false, "along x"},
+    {"height", DEA_SHAPE_LENGTH, false, "along y"},
+    {"radius", DEA_SHAPE_LENGTH, false, "of its corners"}};
 
 /* Adds a contour but for vertices that fall on the next one. */
 static void add_without_gaps(struct dea_region *region, struct dea_vertex *v, size_t count)
@@ -203,9 +203,9 @@ const struct dea_shape_type dea_shape_polygon = {
 
 static const struct dea_shape_parameter stadium[] = {
     CENTRE,
-    {"length", DEA_SHAPE_LENGTH, false, 0, "from end to end"},
-    {"width", DEA_SHAPE_LENGTH, false, 0, "across"},
-    {"angle", DEA_SHAPE_ANGLE, true, 0, "of its length to the x axis"}};
+    {"length", DEA_SHAPE_LENGTH, false, "from end to end"},
+    {"width", DEA_SHAPE_LENGTH, false, "across"},
+    {"angle", DEA_SHAPE_ANGLE, true, "of its length to the x axis"}};
 
 ADD(stadium)
 {
@@ -229,10 +229,10 @@ SHAPE(stadium, "a rectangle with half a disc at either end", stadium);
 
 static const struct dea_shape_parameter arc_strip[] = {
     CENTRE,
-    {"radius", DEA_SHAPE_LENGTH, false, 0, "of its middle line"},
-    {"width", DEA_SHAPE_LENGTH, false, 0, "across"},
-    {"start", DEA_SHAPE_ANGLE, false, 0, "direction of one end from the centre"},
-    {"end", DEA_SHAPE_ANGLE, false, 0, "direction of the other end, counter-clockwise from it"}};
+    {"radius", DEA_SHAPE_LENGTH, false, "of its middle line"},
+    {"width", DEA_SHAPE_LENGTH, false, "across"},
+    {"start", DEA_SHAPE_ANGLE, false, "direction of one end from the centre"},
+    {"end", DEA_SHAPE_ANGLE, false, "direction of the other end, counter-clockwise from it"}};
 
 ADD(arc_strip)
 {
@@ -263,7 +263,7 @@ dea_status dea_region_add_shape(struct dea_region *region, const struct dea_shap
   char what[200];
   for (size_t i = 0; i < type->count; i++) {
     const struct dea_shape_parameter *p = &type->parameter[i];
-    full[i] = isnan(value[i]) && p->optional ? p->default_value : value[i];
+    full[i] = isnan(value[i]) && p->optional ? 0 : value[i];
     bool good = isfinite(full[i]) &&
                 (p->unit != DEA_SHAPE_LENGTH || full[i] > 0 || (full[i] == 0 && p->optional));
     if (!good) {

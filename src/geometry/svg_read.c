@@ -59,36 +59,17 @@ static void skip_space(const char **text)
 /* A number as XML writes it, after space and commas. */
 static bool read_number(const char **text, double *out)
 {
-  char digits[64];
-  size_t n = 0, whole = 0;
   skip_space(text);
-  const char *c = *text;
-  const char *start = c;
-  c += *c == '-' || *c == '+';
-  for (; is_digit(*c); c++, whole++) {
-  }
-  if (*c == '.') {
-    for (c++; is_digit(*c); c++, whole++) {
-    }
-  }
-  if (whole == 0) {
+  const char *digits = *text + (**text == '-' || **text == '+');
+  if (!is_digit(digits[*digits == '.'])) {
     return false;
   }
-  if (*c == 'e' || *c == 'E') {
-    const char *exponent = c + 1 + (c[1] == '-' || c[1] == '+');
-    for (; is_digit(*exponent); exponent++) {
-      c = exponent + 1;
-    }
+  if (digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X')) { // hexadecimal to C alone
+    *out = 0;
+    *text = digits + 1;
+    return true;
   }
-  n = (size_t)(c - start);
-  if (n >= sizeof digits) {
-    n = sizeof digits - 1; // digits beyond any that count
-  }
-  memcpy(digits, start, n);
-  digits[n] = '\0';
-  const char *end;
-  *out = dea_text_to_double(digits, &end);
-  *text = c;
+  *out = dea_text_to_double(*text, text);
   return true;
 }
 

@@ -33,11 +33,6 @@ struct finder {
   double centre[2];
 };
 
-static double apart(const double a[2], const double b[2])
-{
-  return hypot(a[0] - b[0], a[1] - b[1]);
-}
-
 /* ---- features ---- */
 
 /* Whether a piece goes on as the one before it. */
@@ -47,7 +42,7 @@ static bool goes_on(const struct finder *f, const struct dea_piece *a, const str
     return false;
   }
   if (a->arc) {
-    return a->sweep * b->sweep > 0 && apart(a->centre, b->centre) <= f->tolerance &&
+    return a->sweep * b->sweep > 0 && dea_apart_m(a->centre, b->centre) <= f->tolerance &&
            fabs(a->radius_m - b->radius_m) <= f->tolerance;
   }
   double cross = (a->to[0] - a->from[0]) * (b->to[1] - b->from[1]) -
@@ -125,10 +120,10 @@ static bool is_image(const struct finder *f, const struct feature *a, const stru
                      const double middle[2], const double from[2], const double to[2])
 {
   bool same = a->label == b->label && a->kind == b->kind &&
-              apart(middle, b->middle) <= f->tolerance &&
+              dea_apart_m(middle, b->middle) <= f->tolerance &&
               fabs(a->radius - b->radius) <= f->tolerance;
-  return same && (a->kind == ROUND ||
-                  (apart(from, b->from) <= f->tolerance && apart(to, b->to) <= f->tolerance));
+  return same && (a->kind == ROUND || (dea_apart_m(from, b->from) <= f->tolerance &&
+                                       dea_apart_m(to, b->to) <= f->tolerance));
 }
 
 /* Whether a motion maps every feature onto one. A reflection turns the sense of contours, which is
@@ -236,7 +231,7 @@ static dea_status prepare(struct finder *f, const struct dea_region *const regio
     }
   }
   for (size_t i = 0; i < f->count; i++) {
-    f->feature[i].distance = apart(f->feature[i].middle, f->centre);
+    f->feature[i].distance = dea_apart_m(f->feature[i].middle, f->centre);
   }
   if (f->count > 0) {
     qsort(f->feature, f->count, sizeof *f->feature, by_distance);

@@ -277,12 +277,13 @@ static dea_status check_temperature(struct dea_context *ctx, const char *materia
 
 /* Index of the set with that id (see dea_material_choice for ""); -1 after adding a finding. */
 static int find_set(struct dea_context *ctx, const struct dea_material_data *data,
-                    const struct sets *sets, const char *wanted, struct dea_location location,
+                    const struct sets *sets, const struct dea_label *label,
                     const struct dea_quantity *temperature)
 {
   const char *names[DEA_MATERIAL_SETS_MAX] = {NULL}, *what = sets->what;
   char hint[DEA_HINT_SIZE];
-  if (wanted == NULL || wanted[0] == '\0') {
+  const char *wanted = label != NULL ? label->text : "";
+  if (wanted[0] == '\0') {
     return find_nearest(sets, temperature);
   }
   for (size_t i = 0; i < sets->count; i++) {
@@ -292,8 +293,9 @@ static int find_set(struct dea_context *ctx, const struct dea_material_data *dat
     }
   }
   dea_name_hint_list(wanted, names, sets->count, " All: ", "; there are: ", hint);
-  dea_status status = dea_finding_add(ctx, DEA_ERROR, location, "material '%s' has no %s '%.60s'%s",
-                                      data->name.text, what, wanted, hint);
+  dea_status status =
+      dea_finding_add(ctx, DEA_ERROR, label->location, "material '%s' has no %s '%.60s'%s",
+                      data->name.text, what, wanted, hint);
   if (status == DEA_OK) {
     dea_fail(ctx, DEA_E_DESIGN, "material '%s' has no %s '%.60s'", data->name.text, what, wanted);
   }
@@ -400,14 +402,12 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
   const struct dea_quantity *temperature = choice->temperature;
   *out = (struct dea_material){0};
   snprintf(out->name, sizeof out->name, "%.63s", data->name.text);
-  int law = find_set(ctx, data, &laws, choice->law, choice->law_place, temperature);
-  int permittivity = find_set(ctx, data, &permittivities, choice->permittivity,
-                              choice->permittivity_place, temperature);
-  int breakdown =
-      find_set(ctx, data, &breakdowns, choice->breakdown, choice->breakdown_place, temperature);
-  bool viscous = choice->viscosity == NULL || strcmp(choice->viscosity, "none") != 0;
-  int viscosity = find_set(ctx, data, &viscosities, viscous ? choice->viscosity : NULL,
-                           choice->viscosity_place, temperature);
+  int law = find_set(ctx, data, &laws, choice->law, temperature);
+  int permittivity = find_set(ctx, data, &permittivities, choice->permittivity, temperature);
+  int breakdown = find_set(ctx, data, &breakdowns, choice->breakdown, temperature);
+  bool viscous = choice->viscosity == NULL || strcmp(choice->viscosity->text, "none") != 0;
+  int viscosity =
+      find_set(ctx, data, &viscosities, viscous ? choice->viscosity : NULL, temperature);
   if (law < 0 || permittivity < 0 || breakdown < 0 || viscosity < 0) {
     return dea_context_status(ctx);
   }

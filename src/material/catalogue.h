@@ -138,11 +138,9 @@ dea_status dea_catalogue_read(struct dea_context *ctx, const char *name,
 void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *entry);
 
 /* Which sets of a material are wanted; "" or NULL for the one that was measured nearest to the
- * temperature, or the first where none is known, and "none" for no viscosity. place: of what named
- * it. */
+ * temperature, or the first where none is known, and "none" for no viscosity. */
 struct dea_material_choice {
-  const char *law, *permittivity, *breakdown, *viscosity;
-  struct dea_location law_place, permittivity_place, breakdown_place, viscosity_place;
+  const struct dea_label *law, *permittivity, *breakdown, *viscosity;
   const struct dea_quantity *temperature; // of the device; NULL or absent: not given
 };
 

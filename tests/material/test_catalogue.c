@@ -99,7 +99,7 @@ static void laws_are_stable(const struct dea_catalogue_entry *entry)
   const struct dea_material_data *data = &entry->data;
   for (size_t i = 0; i < data->law_count; i++) {
     const struct dea_law_set *set = &data->laws[i];
-    const struct dea_material_choice choice = {.law = set->id.text};
+    const struct dea_material_choice choice = {.law = &set->id};
     struct dea_material material;
     assert_int_equal(dea_material_select(ctx, data, &choice, &material), DEA_OK);
     const double top = set->range.count == 2 ? set->range.limits[1].si : 1.5;
@@ -136,7 +136,7 @@ TEST(test_breakdown_with_thickness)
 {
   struct dea_catalogue_entry *entry;
   struct dea_device device = {.electrode_radius_m = 10e-3, .pre_stretch = 4};
-  const struct dea_material_choice huang = {.breakdown = "huang-2012"};
+  const struct dea_material_choice huang = {.breakdown = &(struct dea_label){.text = "huang-2012"}};
   assert_int_equal(dea_catalogue_read(ctx, "vhb-4910", nowhere, &entry), DEA_OK);
   assert_int_equal(dea_material_select(ctx, &entry->data, &huang, &device.film), DEA_OK);
   device.film_thickness_unstretched_m = 1e-3;
@@ -180,7 +180,8 @@ TEST(test_elastosil_has_the_numbers_of_the_paper)
 {
   struct dea_catalogue_entry *entry;
   struct dea_material film;
-  const struct dea_material_choice first = {0}, second = {.law = "yeoh-181"};
+  const struct dea_material_choice first = {0},
+                                   second = {.law = &(struct dea_label){.text = "yeoh-181"}};
   assert_int_equal(dea_catalogue_read(ctx, "elastosil-2030", nowhere, &entry), DEA_OK);
   assert_int_equal(dea_material_select(ctx, &entry->data, &first, &film), DEA_OK);
   assert_string_equal(film.law->name, "yeoh");
@@ -275,7 +276,8 @@ TEST(test_temperature)
   struct dea_catalogue_entry *entry;
   struct dea_material film;
   struct dea_quantity at = {.si = 296.15, .origin = DEA_GIVEN};
-  struct dea_material_choice choice = {.temperature = &at, .breakdown = "huang-2012"};
+  struct dea_material_choice choice = {.temperature = &at,
+                                       .breakdown = &(struct dea_label){.text = "huang-2012"}};
   size_t count;
   assert_int_equal(dea_catalogue_read(ctx, "vhb-4905", nowhere, &entry), DEA_OK);
   assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
@@ -287,7 +289,7 @@ TEST(test_temperature)
   assert_int_equal(findings[0].severity, DEA_NOTE);
   assert_non_null(strstr(findings[0].text, "unknown: breakdown field"));
   at.si = 373.15;
-  choice.law = "cycles-0C";
+  choice.law = &(struct dea_label){.text = "cycles-0C"};
   assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
   assert_string_equal(film.law_id, "cycles-0C");
   assert_string_equal(film.viscosity_id, "cycles-80C");
@@ -297,7 +299,7 @@ TEST(test_temperature)
   assert_non_null(strstr(findings[1].text, "'cycles-0C' of 'vhb-4905' was measured at 0 degC, not "
                                            "at 100 degC"));
   at.si = 273.15 - 60;
-  choice.law = choice.viscosity = "cycles-shifted";
+  choice.law = choice.viscosity = &(struct dea_label){.text = "cycles-shifted"};
   assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
   assert_close(film.branches[2].time_s, 7.94 * pow(10, 2.65 * 20 / (64.66 - 20)), 1e-12, 0);
   findings = dea_finding_get(ctx, &count); // of law, permittivity and viscosity

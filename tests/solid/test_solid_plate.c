@@ -117,7 +117,7 @@ static void check_conforming(const struct dea_fibre_disc *p, const struct dea_gr
 /* ---- areas ---- */
 
 static struct dea_hex_shape shape;
-static struct dea_flat_shape flat;
+static struct dea_face_shape flat;
 static struct dea_element_result result;
 
 /* Volume of the elements of a ply whose region has all the bits; flat ones are as thick as the
@@ -157,7 +157,7 @@ static void check_areas(const struct dea_fibre_disc *p, const struct dea_grid *g
 {
   double beta = dea_fibre_disc_angle(p), whole = 0.5 * beta * h;
   assert_int_equal(dea_hex_shape_create(p->order, p->order_z, &shape), DEA_OK);
-  assert_int_equal(dea_flat_shape_create(p->order, &flat), DEA_OK);
+  dea_face_shape_create((int[]){p->order, p->order}, DEA_FACE_ELEMENT, &flat);
   assert_close(volume(grid, DISC_FILM, 0), whole * b * b, tolerance, 0);
   assert_close(volume(grid, DISC_FILM, DEA_FIBRE_DISC_ELECTRODE), whole * a * a, tolerance, 0);
   if (p->fibres > 0) {

@@ -203,7 +203,7 @@ static struct dea_part_material soft_film(const double B[6])
 static void membrane_at(const struct dea_part_material *layer, const double F[6], double field,
                         struct dea_membrane_point *out)
 {
-  assert_int_equal(dea_membrane_point_in_time(layer, layer->viscous, F, field, out), DEA_OK);
+  assert_int_equal(dea_membrane_point(layer, layer->viscous, F, field, out), DEA_OK);
 }
 
 /* Derivatives of a membrane by differences, to a share of the modulus. */

@@ -95,21 +95,12 @@ static dea_status add_ring(const struct geos *g, const GEOSGeometry *ring, size_
   if (points == NULL || !GEOSCoordSeq_getSize_r(g->handle, points, &count) || count < 4) {
     return report_failure(g);
   }
-  size_t first = out->count > 0 ? out->end[out->count - 1] : 0, n = first + count - 1;
-  double(*point)[2] = dea_resize(g->ctx, out->point, n + 1, sizeof *point);
-  DEA_TRY_MEMORY(point != NULL);
-  out->point = point;
-  size_t *end = dea_resize(g->ctx, out->end, out->count + 1, sizeof *end);
-  DEA_TRY_MEMORY(end != NULL);
-  out->end = end;
-  size_t *numbers = dea_resize(g->ctx, out->polygon, out->count + 1, sizeof *numbers);
-  DEA_TRY_MEMORY(numbers != NULL);
-  out->polygon = numbers;
-  for (unsigned k = 0; k + 1 < count; k++) { // the last one is the first
-    GEOSCoordSeq_getXY_r(g->handle, points, k, &point[first + k][0], &point[first + k][1]);
+  double(*point)[2] = out->point + (out->count > 0 ? out->end[out->count - 1] : 0);
+  for (unsigned k = 0; k + 1 < count; k++, point++) { // the last one is the first
+    GEOSCoordSeq_getXY_r(g->handle, points, k, &(*point)[0], &(*point)[1]);
   }
-  end[out->count] = n;
-  numbers[out->count++] = polygon;
+  out->end[out->count] = (size_t)(point - out->point);
+  out->polygon[out->count++] = polygon;
   return DEA_OK;
 }
 
@@ -117,26 +108,22 @@ static dea_status add_ring(const struct geos *g, const GEOSGeometry *ring, size_
 static dea_status read_polygons(const struct geos *g, const GEOSGeometry *from,
                                 struct dea_rings *out)
 {
-  size_t polygon = out->count > 0 ? out->polygon[out->count - 1] + 1 : 0;
-  if (GEOSisEmpty_r(g->handle, from) != 0) {
-    return DEA_OK;
-  }
-  if (GEOSGeomTypeId_r(g->handle, from) == GEOS_POLYGON) {
-    DEA_TRY(g->ctx, add_ring(g, GEOSGetExteriorRing_r(g->handle, from), polygon, out));
-    int holes = GEOSGetNumInteriorRings_r(g->handle, from);
-    for (int i = 0; i < holes; i++) {
-      DEA_TRY(g->ctx, add_ring(g, GEOSGetInteriorRingN_r(g->handle, from, i), polygon, out));
-    }
-    return DEA_OK;
-  }
-  int type = GEOSGeomTypeId_r(g->handle, from);
-  int count = type == GEOS_MULTIPOLYGON || type == GEOS_GEOMETRYCOLLECTION
-                  ? GEOSGetNumGeometries_r(g->handle, from)
-                  : 0;
-  for (int i = 0; i < count; i++) {
+  const int points = GEOSGetNumCoordinates_r(g->handle, from); // more than rings
+  const int parts = GEOSGetNumGeometries_r(g->handle, from);
+  const size_t most = points > 0 ? (size_t)points : 0;
+  out->point = dea_alloc(g->ctx, most, sizeof *out->point);
+  out->end = dea_alloc(g->ctx, most, sizeof *out->end);
+  out->polygon = dea_alloc(g->ctx, most, sizeof *out->polygon);
+  DEA_TRY_MEMORY(out->point != NULL && out->end != NULL && out->polygon != NULL);
+  for (int i = 0; i < parts; i++) {
     const GEOSGeometry *part = GEOSGetGeometryN_r(g->handle, from, i);
-    if (GEOSGeomTypeId_r(g->handle, part) == GEOS_POLYGON) {
-      DEA_TRY(g->ctx, read_polygons(g, part, out));
+    if (GEOSGeomTypeId_r(g->handle, part) != GEOS_POLYGON || GEOSisEmpty_r(g->handle, part) != 0) {
+      continue;
+    }
+    DEA_TRY(g->ctx, add_ring(g, GEOSGetExteriorRing_r(g->handle, part), (size_t)i, out));
+    const int holes = GEOSGetNumInteriorRings_r(g->handle, part);
+    for (int k = 0; k < holes; k++) {
+      DEA_TRY(g->ctx, add_ring(g, GEOSGetInteriorRingN_r(g->handle, part, k), (size_t)i, out));
     }
   }
   return DEA_OK;
@@ -177,9 +164,6 @@ static dea_status overlay(struct dea_context *ctx, enum dea_boolean what, const 
   destroy(&g, made, 3);
   GEOS_finish_r(g.handle);
   dea_free(ctx, parts);
-  if (status != DEA_OK) {
-    dea_rings_free(ctx, out);
-  }
   return status;
 }
 

@@ -20,7 +20,7 @@ static dea_status set_kind(struct dea_context *ctx, struct dea_solid *s, size_t 
   }
   p->kind[e] = kind;
   type = dea_element_types[kind];
-  dea_status status = type->check(part_material);
+  dea_status status = type->check != NULL ? type->check(part_material) : DEA_OK;
   return status == DEA_OK ? DEA_OK
                           : dea_fail(ctx, status, "a %s takes %s", type->name, type->takes);
 }

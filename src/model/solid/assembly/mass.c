@@ -12,7 +12,7 @@ static dea_status mass_of(const struct dea_solid *s, size_t e, double *mass)
   const struct dea_element *element = dea_solid_element(s, e);
   double X[DEA_HEX_DOFS_MAX];
   dea_solid_gather(s, e, s->problem.grid->X, X);
-  return element->type->mass(element, dea_solid_part_material(s, e), X, mass);
+  return dea_element_mass(element, dea_solid_part_material(s, e), X, mass);
 }
 
 /* A += factor d at free displacements, the same in all local axes; d[apart n] is of node n, or of
@@ -70,7 +70,7 @@ dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid 
     const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
     dea_solid_gather(s, e, p->grid->X, X);
     const int count = dea_solid_gather(s, e, v, moving);
-    status = element->type->mass_times(element, dea_solid_part_material(s, e), X, moving, force);
+    status = dea_element_mass_times(element, dea_solid_part_material(s, e), X, moving, force);
     for (int i = 0; i < 3 * count && status == DEA_OK; i++) {
       out[3 * nodes[i / 3] + i % 3] += force[i];
     }

@@ -43,3 +43,39 @@ void dea_element_set_release(struct dea_context *ctx, struct dea_element_set *se
     set->of[kind].basis = NULL;
   }
 }
+
+dea_status dea_element_mass(const struct dea_element *e,
+                            const struct dea_part_material *part_material, const double *X,
+                            double *mass)
+{
+  double kilograms[DEA_HEX_GAUSS_MAX];
+  DEA_TRY_STATUS(e->type->masses(e, part_material, X, kilograms));
+  memset(mass, 0, (size_t)(e->nodes * e->nodes) * sizeof *mass);
+  for (int q = 0; q < e->points; q++) {
+    const double *value = e->value + q * e->value_width;
+    for (int a = 0; a < e->nodes; a++) {
+      const double weight = kilograms[q] * value[a];
+      for (int b = 0; b < e->nodes; b++) {
+        mass[a * e->nodes + b] += weight * value[b];
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_element_mass_times(const struct dea_element *e,
+                                  const struct dea_part_material *part_material, const double *X,
+                                  const double *v, double *out)
+{
+  double kilograms[DEA_HEX_GAUSS_MAX], here[3];
+  DEA_TRY_STATUS(e->type->masses(e, part_material, X, kilograms));
+  memset(out, 0, (size_t)(3 * e->nodes) * sizeof *out);
+  for (int q = 0; q < e->points; q++) {
+    const double *value = e->value + q * e->value_width;
+    dea_element_at(e->nodes, value, v, here);
+    for (int i = 0; i < 3 * e->nodes; i++) {
+      out[i] += kilograms[q] * value[i / 3] * here[i % 3];
+    }
+  }
+  return DEA_OK;
+}

@@ -28,10 +28,12 @@ enum {
 /* A kind at its orders: the same for all elements of a mesh. */
 struct dea_element {
   const struct dea_element_type *type;
-  int nodes;     // of one level (order + 1)^2, times the levels through the thickness
-  int points;    // Gauss points
-  int pressures; // multipliers and values of theta; 0: none
-  void *basis;   // of the kind, owned by the set
+  int nodes;           // of one level (order + 1)^2, times the levels through the thickness
+  int points;          // Gauss points
+  int pressures;       // multipliers and values of theta; 0: none
+  void *basis;         // of the kind, owned by the set
+  const double *value; // N_a of it at the Gauss points, [points][value_width], lent
+  int value_width;
 };
 
 /* All kinds at the orders of a mesh. */
@@ -111,7 +113,8 @@ struct dea_element_type {
   enum dea_element_kind with_potential; // the same with a potential; itself if it has none
   size_t basis_size;
   dea_status (*create)(int order, int order_z, struct dea_element *out); // all but type and basis
-  /* Whether it can be of that: DEA_OK, or DEA_E_UNSUPPORTED and `takes` says what it can be of. */
+  /* Whether it can be of that: DEA_OK, or DEA_E_UNSUPPORTED and `takes` says what it can be of.
+   * NULL for a kind that can be of anything. */
   dea_status (*check)(const struct dea_part_material *part_material);
   const char *takes;
   /* Energy and, up to the order, g and K; theta and volume always. */
@@ -129,14 +132,9 @@ struct dea_element_type {
    * without pressures. */
   dea_status (*constraint)(const struct dea_element *e, const struct dea_element_input *in,
                            double *b, double *L);
-  /* Consistent mass between nodes int rho N_a N_b [kg], the same for each component of the
-   * displacement (docs/theory/vibration.md). [nodes][nodes] */
-  dea_status (*mass)(const struct dea_element *e, const struct dea_part_material *part_material,
-                     const double *X, double *mass);
-  /* That matrix times motions v [nodes][3], without making it; out: [nodes][3]. */
-  dea_status (*mass_times)(const struct dea_element *e,
-                           const struct dea_part_material *part_material, const double *X,
-                           const double *v, double *out);
+  /* Mass at the Gauss points [kg], [points]. */
+  dea_status (*masses)(const struct dea_element *e, const struct dea_part_material *part_material,
+                       const double *X, double *kilograms);
   /* v A v + 2 q . B^T v - q . M q / kappa of a small motion with its potentials and pressures, A at
    * the pressures p_k alone, without kappa; and v . mass v [kg of v's unit squared]
    * (docs/theory/gradients.md, "Frequencies"). */
@@ -178,17 +176,15 @@ void dea_element_set_release(struct dea_context *ctx, struct dea_element_set *se
 /* Numbers that predict fills. */
 size_t dea_element_predicted_count(const struct dea_element *e);
 
-/* mass [nodes][nodes] += kilograms N_a N_b, of the bases at a point. */
-static inline void dea_element_add_mass(int nodes, double kilograms, const double *value,
-                                        double *mass)
-{
-  for (int a = 0; a < nodes; a++) {
-    double weight = kilograms * value[a];
-    for (int b = 0; b < nodes; b++) {
-      mass[a * nodes + b] += weight * value[b];
-    }
-  }
-}
+/* Consistent mass between nodes int rho N_a N_b [kg], the same for each component of the
+ * displacement (docs/theory/vibration.md). [nodes][nodes] */
+dea_status dea_element_mass(const struct dea_element *e,
+                            const struct dea_part_material *part_material, const double *X,
+                            double *mass);
+/* That matrix times motions v [nodes][3], without making it; out: [nodes][3]. */
+dea_status dea_element_mass_times(const struct dea_element *e,
+                                  const struct dea_part_material *part_material, const double *X,
+                                  const double *v, double *out);
 
 /* v [nodes][3] at a Gauss point, value being those of the shape functions there. */
 static inline void dea_element_at(int nodes, const double *value, const double *v, double out[3])
@@ -197,19 +193,6 @@ static inline void dea_element_at(int nodes, const double *value, const double *
   for (int a = 0; a < nodes; a++) {
     for (int i = 0; i < 3; i++) {
       out[i] += value[a] * v[3 * a + i];
-    }
-  }
-}
-
-/* out [nodes][3] += the same times v [nodes][3]. */
-static inline void dea_element_add_mass_times(int nodes, double kilograms, const double *value,
-                                              const double *v, double *out)
-{
-  double here[3];
-  dea_element_at(nodes, value, v, here);
-  for (int a = 0; a < nodes; a++) {
-    for (int i = 0; i < 3; i++) {
-      out[3 * a + i] += kilograms * value[a] * here[i];
     }
   }
 }

@@ -25,18 +25,6 @@ static void fit_line(int order, int degree, double fit[DEA_FIT_LINE_MAX][DEA_FIT
   }
 }
 
-void dea_fit_create(int order, int order_z, struct dea_gauss_fit *out)
-{
-  out->n = order + 1;
-  out->nz = order_z + 1;
-  fit_line(order, order - 1, out->plane);
-  if (order_z > 0) {
-    fit_line(order_z, order_z > 1 ? order_z - 1 : 1, out->z);
-  } else {
-    out->z[0][0] = 1;
-  }
-}
-
 static void back_line(int order, double fit[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX])
 {
   size_t count = (size_t)order + 1;
@@ -49,15 +37,20 @@ static void back_line(int order, double fit[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX])
   }
 }
 
-void dea_fit_create_back(int order, int order_z, struct dea_gauss_fit *out)
+void dea_fit_create(int order, int order_z, bool back, struct dea_gauss_fit *out)
 {
   out->n = order + 1;
   out->nz = order_z + 1;
-  back_line(order, out->plane);
-  if (order_z > 0) {
-    back_line(order_z, out->z);
+  out->z[0][0] = 1;
+  if (back) {
+    back_line(order, out->plane);
   } else {
-    out->z[0][0] = 1;
+    fit_line(order, order - 1, out->plane);
+  }
+  if (back && order_z > 0) {
+    back_line(order_z, out->z);
+  } else if (order_z > 0) {
+    fit_line(order_z, order_z > 1 ? order_z - 1 : 1, out->z);
   }
 }
 
@@ -93,8 +86,26 @@ void dea_fit_nodes(const struct dea_gauss_fit *fit, int width, const double *at,
   fit_axis(fit->z[0], 1, nz, n * n * width, out);
 }
 
+static void set_force(const struct dea_gauss_fit *fit, double thickness_m, const double *P,
+                      int columns, struct dea_recovered *out)
+{
+  double x[DEA_FIT_LINE_MAX], w[DEA_FIT_LINE_MAX];
+  dea_gauss_rule((size_t)fit->nz, x, w);
+  memset(out->force, 0, sizeof out->force);
+  for (int node = 0; node < out->plane_nodes; node++) {
+    int i = node % fit->n, j = node / fit->n;
+    for (int q = 0; q < out->nodes; q++) { // as many points
+      int a = q % fit->n, b = q / fit->n % fit->n, c = q / (fit->n * fit->n);
+      double weight = fit->plane[i][a] * fit->plane[j][b] * 0.5 * w[c] * thickness_m;
+      for (int m = 0; m < 6; m++) {
+        out->force[node][m] += weight * P[(3 * q + m / 2) * columns + m % 2];
+      }
+    }
+  }
+}
+
 void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VALUES],
-                       struct dea_recovered *out)
+                       double thickness_m, const double *P, int columns, struct dea_recovered *out)
 {
   double value[DEA_HEX_NODES_MAX][DEA_FIT_VALUES];
   out->plane_nodes = fit->n * fit->n;
@@ -106,4 +117,5 @@ void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VAL
     out->energy[node] = value[node][15];
     out->field[node] = value[node][16];
   }
+  set_force(fit, thickness_m, P, columns, out);
 }

@@ -17,14 +17,14 @@ struct dea_gauss_fit {
   double plane[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX], z[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX];
 };
 
-/* order_z: 0 for a flat element. */
-void dea_fit_create(int order, int order_z, struct dea_gauss_fit *out);
-/* The other way: values at the Gauss points of what has these values at the nodes, by the basis of
- * the element. */
-void dea_fit_create_back(int order, int order_z, struct dea_gauss_fit *out);
+/* order_z: 0 for a flat element. back: the other way: values at the Gauss points of what has these
+ * values at the nodes, by the basis of the element. */
+void dea_fit_create(int order, int order_z, bool back, struct dea_gauss_fit *out);
 /* Values at the nodes from those at the Gauss points, [gauss][width] to [nodes][width], or back.
  * Both are numbered first axis fastest. */
 void dea_fit_nodes(const struct dea_gauss_fit *fit, int width, const double *at, double *out);
-/* Numbers of nodes, and F, stress, energy and field of all of them. */
+/* Numbers of nodes, F, stress, energy and field of all of them, and the force through the thickness
+ * [m] of the element. P: [gauss][3][columns], of which the first two count; along the plane it is
+ * fitted as the stress. */
 void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VALUES],
-                       struct dea_recovered *out);
+                       double thickness_m, const double *P, int columns, struct dea_recovered *out);

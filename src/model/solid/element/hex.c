@@ -526,36 +526,17 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
 
 /* ---- mass and metric ---- */
 
-dea_status dea_hex_mass(const struct dea_element *element,
-                        const struct dea_part_material *part_material, const double *X,
-                        double *mass)
+dea_status dea_hex_masses(const struct dea_element *element,
+                          const struct dea_part_material *part_material, const double *X,
+                          double *kilograms)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  const struct dea_hex_shape *s = element->basis;
-  dea_status status = dea_hex_find_points(s, X, rest, points);
-  memset(mass, 0, (size_t)(s->nodes * s->nodes) * sizeof *mass);
-  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
-    double kilograms = part_material->density_kg_per_m3 * points[q].weight;
-    dea_element_add_mass(s->nodes, kilograms, s->value[q], mass);
+  DEA_TRY_STATUS(dea_hex_find_points(element->basis, X, rest, points));
+  for (int q = 0; q < element->points; q++) {
+    kilograms[q] = part_material->density_kg_per_m3 * points[q].weight;
   }
-  return status;
-}
-
-dea_status dea_hex_mass_times(const struct dea_element *element,
-                              const struct dea_part_material *part_material, const double *X,
-                              const double *v, double *out)
-{
-  static const double rest[DEA_HEX_DOFS_MAX] = {0};
-  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  const struct dea_hex_shape *s = element->basis;
-  dea_status status = dea_hex_find_points(s, X, rest, points);
-  memset(out, 0, (size_t)(3 * s->nodes) * sizeof *out);
-  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
-    double kilograms = part_material->density_kg_per_m3 * points[q].weight;
-    dea_element_add_mass_times(s->nodes, kilograms, s->value[q], v, out);
-  }
-  return status;
+  return DEA_OK;
 }
 
 dea_status dea_hex_metric(const struct dea_element *element,
@@ -665,69 +646,67 @@ static void true_stress(const double P[9], const double F[9], double J, double o
   }
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
+void dea_hex_field_at(const struct dea_hex_shape *s, const struct dea_hex_point *at,
+                      double gradient[3][DEA_HEX_NODES_MAX], const double *psi, double scale,
+                      struct dea_hex_field *out)
 {
-  for (int i = 0; i < 3; i++) {
-    out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  for (int J = 0; J < 3; J++) {
+    out->E[J] = 0;
+    for (int n = 0; n < s->nodes; n++) {
+      // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): a field has psi
+      out->E[J] -= scale * psi[n] * gradient[J][n];
+    }
   }
-}
-
-/* P -= d/dF of (eps/2) |w|^2, w = cof(F) E (docs/theory/coupled.md): with F_N the columns of F that
- * is eps times eps_JLN E_J (F_N x w). Returns |w|, the field at J = 1. */
-static double add_electric(double eps, const struct dea_hex_point *at, const double E[3],
-                           double P[9])
-{
-  double w[3], turned[3][3];
   for (int i = 0; i < 3; i++) {
-    w[i] = at->cof[3 * i] * E[0] + at->cof[3 * i + 1] * E[1] + at->cof[3 * i + 2] * E[2];
+    out->w[i] = at->cof[3 * i] * out->E[0] + at->cof[3 * i + 1] * out->E[1] +
+                at->cof[3 * i + 2] * out->E[2];
+    dea_cross(at->F + 3 * i, out->E, out->H[i]);
   }
   for (int N = 0; N < 3; N++) {
     const double column[3] = {at->F[N], at->F[3 + N], at->F[6 + N]};
-    cross(column, w, turned[N]);
+    double turned[3];
+    dea_cross(column, out->w, turned);
+    for (int k = 0; k < 3; k++) {
+      out->A[k][N] = turned[k];
+    }
   }
+}
+
+/* P -= d/dF of (eps/2) |w|^2 (docs/theory/coupled.md): with F_N the columns of F that is eps times
+ * eps_JLN E_J (F_N x w), whose components are the columns of A. Returns |w|, the field at J = 1. */
+static double add_electric(double eps, const struct dea_hex_field *field, double P[9])
+{
+  const double *E = field->E, *w = field->w;
   for (int L = 0; L < 3; L++) {
     int N = (L + 1) % 3, J = (L + 2) % 3; // even: J L N, odd: N L J
     for (int k = 0; k < 3; k++) {
-      P[3 * k + L] -= eps * (E[J] * turned[N][k] - E[N] * turned[J][k]);
+      P[3 * k + L] -= eps * (E[J] * field->A[k][N] - E[N] * field->A[k][J]);
     }
   }
   return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
 }
 
-/* Field E in the stretched flat film from potentials c psi. */
-static void coupled_field(const struct dea_hex_shape *s, double gradient[3][DEA_HEX_NODES_MAX],
-                          const double *psi, double c, double E[3])
-{
-  for (int J = 0; J < 3; J++) {
-    E[J] = 0;
-    for (int n = 0; n < s->nodes; n++) {
-      // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): a field has psi
-      E[J] -= c * psi[n] * gradient[J][n];
-    }
-  }
-}
-
-/* P, all of it, and the field at J = 1. E: of a coupled field, NULL for a thin film with
+/* P, all of it, and the field at J = 1. coupled: the field, NULL for a thin film with
  * thin_V_per_m. */
 static dea_status total_stress(const struct dea_part_material *part_material,
                                const struct dea_hex_point *at, double pressure, double thin_V_per_m,
-                               const double *E, double P[9], double *field)
+                               const struct dea_hex_field *coupled, double P[9], double *field)
 {
   struct dea_point point;
   DEA_TRY_STATUS(dea_part_material_point(part_material, at->F, at->cof, at->J, pressure,
-                                         E == NULL ? thin_V_per_m : 0, false, &point));
+                                         coupled == NULL ? thin_V_per_m : 0, false, &point));
   const double *c = at->cof;
   memcpy(P, point.P, 9 * sizeof *P);
-  *field = E != NULL ? add_electric(part_material->permittivity_F_per_m, at, E, P)
-                     : fabs(thin_V_per_m) * sqrt(c[2] * c[2] + c[5] * c[5] + c[8] * c[8]);
+  *field = coupled != NULL ? add_electric(part_material->permittivity_F_per_m, coupled, P)
+                           : fabs(thin_V_per_m) * sqrt(c[2] * c[2] + c[5] * c[5] + c[8] * c[8]);
   return DEA_OK;
 }
 
 /* Values of one Gauss point, and P for the membrane force, as total_stress has it. */
 static dea_status recover_point(const struct dea_part_material *part_material,
                                 const struct dea_hex_point *at, double pressure,
-                                double thin_V_per_m, const double *E, double values[DEA_FIT_VALUES],
-                                double P[9])
+                                double thin_V_per_m, const struct dea_hex_field *coupled,
+                                double values[DEA_FIT_VALUES], double P[9])
 {
   struct dea_point point;
   dea_status status =
@@ -738,8 +717,8 @@ static dea_status recover_point(const struct dea_part_material *part_material,
                 dea_part_material_pointwise(part_material, at->J, &slope, &curvature);
   memcpy(P, point.P, sizeof point.P);
   values[16] = 0;
-  if (status == DEA_OK && (E != NULL || thin_V_per_m != 0)) {
-    status = total_stress(part_material, at, pressure, thin_V_per_m, E, P, &values[16]);
+  if (status == DEA_OK && (coupled != NULL || thin_V_per_m != 0)) {
+    status = total_stress(part_material, at, pressure, thin_V_per_m, coupled, P, &values[16]);
   }
   if (status == DEA_OK) {
     memcpy(values, at->F, sizeof at->F);
@@ -748,33 +727,13 @@ static dea_status recover_point(const struct dea_part_material *part_material,
   return status;
 }
 
-/* P through the thickness of the element, at the plane nodes; along the plane as the stress. */
-static void membrane_force(const struct dea_hex_shape *s, const struct dea_gauss_fit *fit,
-                           double thickness_m, double (*P)[9], struct dea_recovered *out)
-{
-  double x[DEA_FIT_LINE_MAX], w[DEA_FIT_LINE_MAX];
-  dea_gauss_rule((size_t)fit->nz, x, w);
-  memset(out->force, 0, sizeof out->force);
-  for (int node = 0; node < out->plane_nodes; node++) {
-    int i = node % fit->n, j = node / fit->n;
-    for (int q = 0; q < s->gauss; q++) {
-      int a = q % fit->n, b = q / fit->n % fit->n, c = q / (fit->n * fit->n);
-      double weight = fit->plane[i][a] * fit->plane[j][b] * 0.5 * w[c] * thickness_m;
-      for (int m = 0; m < 3; m++) {
-        out->force[node][2 * m] += weight * P[q][3 * m];
-        out->force[node][2 * m + 1] += weight * P[q][3 * m + 1];
-      }
-    }
-  }
-}
-
 /* An element at its Gauss points. */
 struct hex_points {
   struct dea_hex_point at[DEA_HEX_GAUSS_MAX];
   double pressure[DEA_HEX_GAUSS_MAX];
   double thin_V_per_m; // of a thin film
   bool coupled;
-  double E[DEA_HEX_GAUSS_MAX][3]; // of a coupled field
+  struct dea_hex_field field[DEA_HEX_GAUSS_MAX]; // of a coupled field
 };
 
 static dea_status find_state(const struct dea_element *element, const struct dea_element_input *in,
@@ -793,7 +752,8 @@ static dea_status find_state(const struct dea_element *element, const struct dea
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
     out->pressure[q] = pressure_at(shape, part_material, q, in->multiplier, theta);
     if (out->coupled) {
-      coupled_field(shape, gradient[q], in->potential, in->potential_V_per_m, out->E[q]);
+      dea_hex_field_at(shape, &out->at[q], gradient[q], in->potential, in->potential_V_per_m,
+                       &out->field[q]);
     }
   }
   return status;
@@ -811,14 +771,13 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
     status =
         recover_point(in->part_material, &points.at[q], points.pressure[q], points.thin_V_per_m,
-                      points.coupled ? points.E[q] : NULL, values[q], P[q]);
+                      points.coupled ? &points.field[q] : NULL, values[q], P[q]);
     out->volume_m3 += points.at[q].weight;
     out->volume_error = fmax(out->volume_error, fabs(points.at[q].J - 1));
   }
   DEA_TRY_STATUS(status);
-  dea_fit_create(shape->order, shape->order_z, &fit);
-  dea_recovered_set(&fit, values, out);
-  membrane_force(shape, &fit, in->X[3 * (shape->nodes - 1) + 2] - in->X[2], P, out);
+  dea_fit_create(shape->order, shape->order_z, false, &fit);
+  dea_recovered_set(&fit, values, in->X[3 * (shape->nodes - 1) + 2] - in->X[2], P[0], 3, out);
   return DEA_OK;
 }
 
@@ -837,7 +796,7 @@ dea_status dea_hex_state(const struct dea_element *element, const struct dea_ele
     out->pressure[q] = points.pressure[q];
     if (stress) {
       status = total_stress(in->part_material, at, points.pressure[q], points.thin_V_per_m,
-                            points.coupled ? points.E[q] : NULL, out->P[q], &field);
+                            points.coupled ? &points.field[q] : NULL, out->P[q], &field);
     }
   }
   return status;
@@ -852,13 +811,9 @@ dea_status dea_hex_create(int order, int order_z, struct dea_element *out)
   out->nodes = shape->nodes;
   out->points = shape->gauss;
   out->pressures = shape->pressures;
+  out->value = shape->value[0];
+  out->value_width = DEA_HEX_NODES_MAX;
   return status;
-}
-
-dea_status dea_hex_check(const struct dea_part_material *part_material)
-{
-  (void)part_material;
-  return DEA_OK;
 }
 
 const struct dea_element_type dea_element_hexahedron = {

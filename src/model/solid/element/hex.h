@@ -39,6 +39,16 @@ dea_status dea_hex_kinematics(const struct dea_hex_shape *shape, const double *X
                               double (*gradient)[3][DEA_HEX_NODES_MAX],
                               struct dea_hex_point *points);
 
+/* Electric state of a Gauss point: the field E = -c Grad psi, w = cof(F) E, rows H_m = F_m x E, and
+ * rows A_k = eps_kmi w_i F_m. */
+struct dea_hex_field {
+  double E[3], w[3], H[3][3], A[3][3];
+};
+/* From gradients at the point, as rows [J][node], potentials psi [nodes] and their scale c. */
+void dea_hex_field_at(const struct dea_hex_shape *shape, const struct dea_hex_point *at,
+                      double gradient[3][DEA_HEX_NODES_MAX], const double *psi, double scale,
+                      struct dea_hex_field *out);
+
 /* Projection of J - 1 on the pressure polynomials phi: theta = M^-1 moment with moment = int phi
  * (J - 1) and M = int phi phi = L L^T, L kept in `factor`. */
 dea_status dea_hex_project(const struct dea_hex_shape *shape, const struct dea_hex_point *points,
@@ -47,19 +57,15 @@ dea_status dea_hex_project(const struct dea_hex_shape *shape, const struct dea_h
 
 /* What the hexahedron can do (element.h), for the kinds that go on from it. */
 dea_status dea_hex_create(int order, int order_z, struct dea_element *out);
-dea_status dea_hex_check(const struct dea_part_material *part_material);
 dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_element_input *in,
                             enum dea_eval_order order, struct dea_element_result *out);
 dea_status dea_hex_constraint(const struct dea_element *element, const struct dea_element_input *in,
                               double *b, double *L);
 dea_status dea_hex_predict(const struct dea_element *element, const struct dea_element_input *in,
                            const double *step, double fraction, bool stresses, double *predicted);
-dea_status dea_hex_mass(const struct dea_element *element,
-                        const struct dea_part_material *part_material, const double *X,
-                        double *mass);
-dea_status dea_hex_mass_times(const struct dea_element *element,
-                              const struct dea_part_material *part_material, const double *X,
-                              const double *v, double *out);
+dea_status dea_hex_masses(const struct dea_element *element,
+                          const struct dea_part_material *part_material, const double *X,
+                          double *kilograms);
 /* element->type->motion, but for a potential, with what dea_hex_find_motion has found. */
 dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea_element_input *in,
                              const struct dea_element_motion *motion,
@@ -82,7 +88,6 @@ dea_status dea_hex_state(const struct dea_element *element, const struct dea_ele
 /* The members of such a kind's type that are the hexahedron's. */
 #define DEA_HEX_MEMBERS                                                                            \
   .with_potential = DEA_ELEMENT_POTENTIAL_HEXAHEDRON, .basis_size = sizeof(struct dea_hex_shape),  \
-  .create = dea_hex_create, .check = dea_hex_check, .predict = dea_hex_predict,                    \
-  .constraint = dea_hex_constraint, .mass = dea_hex_mass, .mass_times = dea_hex_mass_times,        \
-  .metric = dea_hex_metric, .strains = dea_hex_strains, .membrane_state = dea_hex_membrane_state,  \
-  .recover = dea_hex_recover, .state = dea_hex_state
+  .create = dea_hex_create, .predict = dea_hex_predict, .constraint = dea_hex_constraint,          \
+  .masses = dea_hex_masses, .metric = dea_hex_metric, .strains = dea_hex_strains,                  \
+  .membrane_state = dea_hex_membrane_state, .recover = dea_hex_recover, .state = dea_hex_state

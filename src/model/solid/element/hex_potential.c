@@ -17,11 +17,6 @@
 
 enum { ROWS_MAX = 3 * DEA_HEX_GAUSS_MAX };
 
-/* Electric state of a Gauss point. H: rows H_m = F_m x E; A: rows A_k = eps_kmi w_i F_m. */
-struct field_point {
-  double E[3], w[3], H[3][3], A[3][3];
-};
-
 /* Work space of a tangent, rows (q, i) or (q, J). */
 struct field_work {
   double B[ROWS_MAX][DEA_ELEMENT_DOFS_MAX];    // sqrt(weight) dw_i by the unknowns
@@ -30,48 +25,16 @@ struct field_work {
   double block[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
 };
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-  out[0] = a[1] * b[2] - a[2] * b[1];
-  out[1] = a[2] * b[0] - a[0] * b[2];
-  out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void field_at(const struct dea_hex_shape *s, const struct dea_hex_point *at,
-                     double gradient[3][DEA_HEX_NODES_MAX], const double *psi, double scale,
-                     struct field_point *out)
-{
-  for (int J = 0; J < 3; J++) {
-    out->E[J] = 0;
-    for (int n = 0; n < s->nodes; n++) {
-      out->E[J] -= scale * psi[n] * gradient[J][n];
-    }
-  }
-  for (int i = 0; i < 3; i++) {
-    out->w[i] = at->cof[3 * i] * out->E[0] + at->cof[3 * i + 1] * out->E[1] +
-                at->cof[3 * i + 2] * out->E[2];
-    cross(at->F + 3 * i, out->E, out->H[i]);
-  }
-  for (int N = 0; N < 3; N++) {
-    const double column[3] = {at->F[N], at->F[3 + N], at->F[6 + N]};
-    double turned[3];
-    cross(column, out->w, turned);
-    for (int k = 0; k < 3; k++) {
-      out->A[k][N] = turned[k];
-    }
-  }
-}
-
 /* Forces: -eps w . dw/du and -eps w . dw/dpsi. */
 static void add_force(const struct dea_hex_shape *s, double eps, double scale,
                       const struct dea_hex_point *at, double gradient[3][DEA_HEX_NODES_MAX],
-                      const struct field_point *field, double *g)
+                      const struct dea_hex_field *field, double *g)
 {
   double T[3][3], D[3]; // T_kL = w . dw/dF_kL; D_J = w . cof_J
   for (int L = 0; L < 3; L++) {
     const double column[3] = {field->H[0][L], field->H[1][L], field->H[2][L]};
     double turned[3];
-    cross(column, field->w, turned);
+    dea_cross(column, field->w, turned);
     for (int k = 0; k < 3; k++) {
       T[k][L] = turned[k];
     }
@@ -90,14 +53,14 @@ static void add_force(const struct dea_hex_shape *s, double eps, double scale,
 /* Rows of the work space that belong to one Gauss point. */
 static void tangent_point(const struct dea_hex_shape *s, int q, double eps, double scale,
                           const struct dea_hex_point *at, double gradient[3][DEA_HEX_NODES_MAX],
-                          const struct field_point *field, struct field_work *work)
+                          const struct dea_hex_field *field, struct field_work *work)
 {
   double root = sqrt(at->weight), f = -eps * at->weight;
   double(*B)[DEA_ELEMENT_DOFS_MAX] = work->B + 3 * q;
   for (int n = 0; n < s->nodes; n++) {
     const double g[3] = {gradient[0][n], gradient[1][n], gradient[2][n]};
     double h[3], turned[3], mixed[3];
-    cross(field->E, g, turned);
+    dea_cross(field->E, g, turned);
     for (int m = 0; m < 3; m++) {
       const double *H = field->H[m], *c = at->cof + 3 * m;
       h[m] = root * (H[0] * g[0] + H[1] * g[1] + H[2] * g[2]);
@@ -108,7 +71,7 @@ static void tangent_point(const struct dea_hex_shape *s, int q, double eps, doub
       int k = (i + 1) % 3, m = (i + 2) % 3;
       B[i][4 * n + k] = h[m];
       B[i][4 * n + m] = -h[k];
-      cross(g, field->A[i], mixed);
+      dea_cross(g, field->A[i], mixed);
       for (int J = 0; J < 3; J++) {
         work->turn[i][3 * q + J][n] = f * field->w[i] * turned[J];
         work->mix[i][3 * q + J][n] = -f * scale * mixed[J];
@@ -169,8 +132,8 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
     dea_element_spread(shape->nodes, out->g, order >= DEA_TANGENT ? out->K : NULL, out->g, out->K);
   }
   for (int q = 0; q < shape->gauss; q++) {
-    struct field_point field;
-    field_at(shape, &points[q], gradient[q], in->potential, c, &field);
+    struct dea_hex_field field;
+    dea_hex_field_at(shape, &points[q], gradient[q], in->potential, c, &field);
     const double *w = field.w;
     out->energy_J -= 0.5 * eps * points[q].weight * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
     if (order >= DEA_FORCE) {
@@ -201,7 +164,7 @@ static void cofactors_along(const double F[9], const double H[9], double out[9])
 
 /* Second derivative of |w|^2/2 along H and D, the changes of F and E: of w = cof(F) E they are w' =
  * cof' E + cof D and w'' = 2 (cof(H) E + cof' D). */
-static double bend_field(const struct dea_hex_point *at, const struct field_point *field,
+static double bend_field(const struct dea_hex_point *at, const struct dea_hex_field *field,
                          const double H[9], const double D[3])
 {
   double along[9], twice[9], sum = 0;
@@ -233,9 +196,9 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
                : status;
   status = status == DEA_OK ? dea_hex_kinematics(shape, in->X, in->u, gradient, points) : status;
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
-    struct field_point field, change;
-    field_at(shape, &points[q], gradient[q], motion->potential, c, &change);
-    field_at(shape, &points[q], gradient[q], in->potential, c, &field);
+    struct dea_hex_field field, change;
+    dea_hex_field_at(shape, &points[q], gradient[q], motion->potential, c, &change);
+    dea_hex_field_at(shape, &points[q], gradient[q], in->potential, c, &field);
     *stiffness -= eps * points[q].weight * bend_field(&points[q], &field, H[q], change.E);
   }
   return status;

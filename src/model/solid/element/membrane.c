@@ -9,40 +9,61 @@
 #include <math.h>
 #include <string.h>
 
-dea_status dea_flat_shape_create(int order, struct dea_flat_shape *out)
+/* Points and weights of a rule along one axis of a face; returns their number. */
+static size_t line_rule(int order, enum dea_face_rule rule, double *x, double *w)
 {
-  memset(out, 0, sizeof *out);
-  if (order < 1 || order > DEA_HEX_ORDER_MAX) {
-    return DEA_E_ARGUMENT;
+  size_t count = (size_t)order + 1;
+  size_t gauss = rule == DEA_FACE_ELEMENT ? count : (3 * (size_t)order + 1) / 2;
+  double at[DEA_HEX_ORDER_MAX + 2], weight[DEA_HEX_ORDER_MAX + 2];
+  double value[DEA_HEX_ORDER_MAX + 1], slope[DEA_HEX_ORDER_MAX + 1];
+  dea_gauss_rule(gauss, at, weight);
+  if (rule != DEA_FACE_AT_NODES) {
+    memcpy(x, at, gauss * sizeof *x);
+    memcpy(w, weight, gauss * sizeof *w);
+    return gauss;
   }
-  int n = order + 1;
-  double nodes[DEA_HEX_ORDER_MAX + 1], x[DEA_HEX_ORDER_MAX + 1], w[DEA_HEX_ORDER_MAX + 1];
-  double value[DEA_HEX_ORDER_MAX + 1][DEA_HEX_ORDER_MAX + 1];
-  double slope[DEA_HEX_ORDER_MAX + 1][DEA_HEX_ORDER_MAX + 1];
-  out->order = order;
-  out->nodes = out->gauss = n * n;
-  dea_lobatto_nodes((size_t)order, nodes);
-  dea_gauss_rule((size_t)n, x, w);
-  for (int i = 0; i < n; i++) {
-    dea_lagrange((size_t)n, nodes, x[i], value[i], slope[i]);
-  }
-  for (int q = 0; q < out->gauss; q++) {
-    int i = q % n, j = q / n;
-    out->weight[q] = w[i] * w[j];
-    out->node_at[q][0] = nodes[i];
-    out->node_at[q][1] = nodes[j];
-    for (int m = 0; m < out->nodes; m++) {
-      out->value[q][m] = value[i][m % n] * value[j][m / n];
-      out->slope[q][0][m] = slope[i][m % n] * value[j][m / n];
-      out->slope[q][1][m] = value[i][m % n] * slope[j][m / n];
+  dea_lobatto_nodes((size_t)order, x);
+  memset(w, 0, count * sizeof *w);
+  for (size_t q = 0; q < gauss; q++) { // integrals of the nodes' polynomials
+    dea_lagrange(count, x, at[q], value, slope);
+    for (size_t i = 0; i < count; i++) {
+      w[i] += weight[q] * value[i];
     }
   }
-  return DEA_OK;
+  return count;
+}
+
+void dea_face_shape_create(const int order[2], enum dea_face_rule rule, struct dea_face_shape *out)
+{
+  double x[2][DEA_HEX_ORDER_MAX + 2], w[2][DEA_HEX_ORDER_MAX + 2];
+  double nodes[2][DEA_HEX_ORDER_MAX + 1];
+  double value[2][DEA_HEX_ORDER_MAX + 1], slope[2][DEA_HEX_ORDER_MAX + 1];
+  size_t count[2];
+  for (int a = 0; a < 2; a++) {
+    count[a] = line_rule(order[a], rule, x[a], w[a]);
+    dea_lobatto_nodes((size_t)order[a], nodes[a]);
+  }
+  memcpy(out->order, order, sizeof out->order);
+  out->nodes = (order[0] + 1) * (order[1] + 1);
+  out->points = (int)(count[0] * count[1]);
+  for (size_t p = 0; p < count[0] * count[1]; p++) {
+    const size_t at[2] = {p % count[0], p / count[0]};
+    for (int a = 0; a < 2; a++) {
+      dea_lagrange((size_t)order[a] + 1, nodes[a], x[a][at[a]], value[a], slope[a]);
+    }
+    for (int n = 0; n < out->nodes; n++) {
+      int i = n % (order[0] + 1), j = n / (order[0] + 1);
+      out->value[p][n] = value[0][i] * value[1][j];
+      out->slope[p][0][n] = slope[0][i] * value[1][j];
+      out->slope[p][1][n] = value[0][i] * slope[1][j];
+    }
+    out->weight[p] = w[0][at[0]] * w[1][at[1]];
+  }
 }
 
 /* Gradients [2][node] by X at a Gauss point and its reference area; 0 for an inverted element. */
-static double gradients_at(const struct dea_flat_shape *s, int q, const double *X,
-                           double gradient[2][DEA_FLAT_NODES_MAX])
+static double gradients_at(const struct dea_face_shape *s, int q, const double *X,
+                           double gradient[2][DEA_FACE_NODES_MAX])
 {
   double map[4] = {0}; // dX_J/dxi_a as map[2 J + a]
   for (int n = 0; n < s->nodes; n++) {
@@ -62,7 +83,7 @@ static double gradients_at(const struct dea_flat_shape *s, int q, const double *
   return s->weight[q] * area;
 }
 
-static void in_plane_columns(int nodes, const double *u, double gradient[2][DEA_FLAT_NODES_MAX],
+static void in_plane_columns(int nodes, const double *u, double gradient[2][DEA_FACE_NODES_MAX],
                              double F[6])
 {
   static const double flat[6] = {1, 0, 0, 1, 0, 0};
@@ -76,10 +97,10 @@ static void in_plane_columns(int nodes, const double *u, double gradient[2][DEA_
 
 /* In-plane columns of F at a Gauss point; returns its reference area, 0 for an inverted element, of
  * which F is not set. */
-static double columns_at(const struct dea_flat_shape *shape, int q, const double *X,
+static double columns_at(const struct dea_face_shape *shape, int q, const double *X,
                          const double *u, double F[6])
 {
-  double gradient[2][DEA_FLAT_NODES_MAX], area = gradients_at(shape, q, X, gradient);
+  double gradient[2][DEA_FACE_NODES_MAX], area = gradients_at(shape, q, X, gradient);
   if (area > 0) {
     in_plane_columns(shape->nodes, u, gradient, F);
   }
@@ -87,7 +108,7 @@ static double columns_at(const struct dea_flat_shape *shape, int q, const double
 }
 
 static void add_force(int nodes, double weight, const double P[6],
-                      double gradient[2][DEA_FLAT_NODES_MAX], double *g)
+                      double gradient[2][DEA_FACE_NODES_MAX], double *g)
 {
   for (int n = 0; n < nodes; n++) {
     for (int i = 0; i < 3; i++) {
@@ -98,7 +119,7 @@ static void add_force(int nodes, double weight, const double P[6],
 
 /* Upper part of K += weight grad A grad. */
 static void add_tangent(int nodes, double weight, const double A[36],
-                        double gradient[2][DEA_FLAT_NODES_MAX], double *K)
+                        double gradient[2][DEA_FACE_NODES_MAX], double *K)
 {
   int dofs = 3 * nodes;
   for (int n = 0; n < nodes; n++) {
@@ -127,7 +148,7 @@ static dea_status point_at(const struct dea_part_material *part_material, int q,
 {
   static const double little = 1e-6; // of the modulus
   const double *B = part_material->viscous != NULL ? part_material->viscous + 6 * q : NULL;
-  dea_status status = dea_membrane_point_in_time(part_material, B, F, field_V_per_m, out);
+  dea_status status = dea_membrane_point(part_material, B, F, field_V_per_m, out);
   for (int a = 0; a < 6 && status == DEA_OK && out->state != DEA_TAUT; a++) {
     out->A[7 * a] += little * dea_part_material_modulus(part_material);
   }
@@ -137,9 +158,9 @@ static dea_status point_at(const struct dea_part_material *part_material, int q,
 static dea_status evaluate(const struct dea_element *element, const struct dea_element_input *in,
                            enum dea_eval_order order, struct dea_element_result *out)
 {
-  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_face_shape *shape = element->basis;
   const struct dea_part_material *part_material = in->part_material;
-  double gradient[2][DEA_FLAT_NODES_MAX], F[6];
+  double gradient[2][DEA_FACE_NODES_MAX], F[6];
   double field = dea_part_material_field(part_material, in->voltage_V);
   size_t dofs = 3 * (size_t)shape->nodes;
   struct dea_membrane_point point;
@@ -147,7 +168,7 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
   memset(out->theta, 0, sizeof out->theta);
   memset(out->K, 0, order >= DEA_TANGENT ? dofs * dofs * sizeof *out->K : 0);
   out->energy_J = out->volume_m3 = 0;
-  for (int q = 0; q < shape->gauss; q++) {
+  for (int q = 0; q < shape->points; q++) {
     double weight = part_material->thickness_m * gradients_at(shape, q, in->X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
@@ -174,11 +195,11 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
 static dea_status membrane_state(const struct dea_element *element,
                                  const struct dea_element_input *in, struct dea_membrane_state *out)
 {
-  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_face_shape *shape = element->basis;
   const struct dea_part_material *part_material = in->part_material;
   double F[6], field = dea_part_material_field(part_material, in->voltage_V);
-  out->count = shape->gauss;
-  for (int q = 0; q < shape->gauss; q++) {
+  out->count = shape->points;
+  for (int q = 0; q < shape->points; q++) {
     struct dea_membrane_point point;
     if (!(columns_at(shape, q, in->X, in->u, F) > 0)) {
       return DEA_E_DOMAIN;
@@ -198,12 +219,12 @@ static dea_status neutral_stiffness(const struct dea_element *element,
                                     const struct dea_part_material *part_material, const double *X,
                                     double *out)
 {
-  const struct dea_flat_shape *shape = element->basis;
-  double gradient[2][DEA_FLAT_NODES_MAX];
+  const struct dea_face_shape *shape = element->basis;
+  double gradient[2][DEA_FACE_NODES_MAX];
   double modulus =
       4 * part_material->law->shear_modulus(part_material->param) * part_material->thickness_m;
   memset(out, 0, (size_t)shape->nodes * sizeof *out);
-  for (int q = 0; q < shape->gauss; q++) {
+  for (int q = 0; q < shape->points; q++) {
     double weight = modulus * gradients_at(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
@@ -219,11 +240,11 @@ static dea_status metric(const struct dea_element *element,
                          const struct dea_part_material *part_material, const double *X,
                          double *laplace, double *volume)
 {
-  const struct dea_flat_shape *shape = element->basis;
-  double gradient[2][DEA_FLAT_NODES_MAX], whole = 0;
+  const struct dea_face_shape *shape = element->basis;
+  double gradient[2][DEA_FACE_NODES_MAX], whole = 0;
   size_t nodes = (size_t)shape->nodes;
   memset(laplace, 0, nodes * nodes * sizeof *laplace);
-  for (int q = 0; q < shape->gauss; q++) {
+  for (int q = 0; q < shape->points; q++) {
     double weight = part_material->thickness_m * gradients_at(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
@@ -242,37 +263,17 @@ static dea_status metric(const struct dea_element *element,
   return DEA_OK;
 }
 
-static dea_status mass(const struct dea_element *element,
-                       const struct dea_part_material *part_material, const double *X, double *out)
+static dea_status masses(const struct dea_element *element,
+                         const struct dea_part_material *part_material, const double *X,
+                         double *kilograms)
 {
-  const struct dea_flat_shape *s = element->basis;
-  double gradient[2][DEA_FLAT_NODES_MAX];
-  memset(out, 0, (size_t)(s->nodes * s->nodes) * sizeof *out);
-  for (int q = 0; q < s->gauss; q++) {
-    double area = gradients_at(s, q, X, gradient);
-    double kilograms = part_material->density_kg_per_m3 * part_material->thickness_m * area;
+  double gradient[2][DEA_FACE_NODES_MAX];
+  for (int q = 0; q < element->points; q++) {
+    const double area = gradients_at(element->basis, q, X, gradient);
+    kilograms[q] = part_material->density_kg_per_m3 * part_material->thickness_m * area;
     if (!(area > 0)) {
       return DEA_E_DOMAIN;
     }
-    dea_element_add_mass(s->nodes, kilograms, s->value[q], out);
-  }
-  return DEA_OK;
-}
-
-static dea_status mass_times(const struct dea_element *element,
-                             const struct dea_part_material *part_material, const double *X,
-                             const double *v, double *out)
-{
-  const struct dea_flat_shape *s = element->basis;
-  double gradient[2][DEA_FLAT_NODES_MAX];
-  memset(out, 0, (size_t)(3 * s->nodes) * sizeof *out);
-  for (int q = 0; q < s->gauss; q++) {
-    double area = gradients_at(s, q, X, gradient);
-    double kilograms = part_material->density_kg_per_m3 * part_material->thickness_m * area;
-    if (!(area > 0)) {
-      return DEA_E_DOMAIN;
-    }
-    dea_element_add_mass_times(s->nodes, kilograms, s->value[q], v, out);
   }
   return DEA_OK;
 }
@@ -280,12 +281,12 @@ static dea_status mass_times(const struct dea_element *element,
 static dea_status motion(const struct dea_element *element, const struct dea_element_input *in,
                          const struct dea_element_motion *motion, double *stiffness, double *mass)
 {
-  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_face_shape *shape = element->basis;
   const struct dea_part_material *part_material = in->part_material;
   const double field = dea_part_material_field(part_material, in->voltage_V);
   *stiffness = *mass = 0;
-  for (int q = 0; q < shape->gauss; q++) {
-    double gradient[2][DEA_FLAT_NODES_MAX], F[6], H[6] = {0}, here[3];
+  for (int q = 0; q < shape->points; q++) {
+    double gradient[2][DEA_FACE_NODES_MAX], F[6], H[6] = {0}, here[3];
     double weight = part_material->thickness_m * gradients_at(shape, q, in->X, gradient);
     struct dea_membrane_point point;
     if (!(weight > 0)) {
@@ -354,7 +355,7 @@ static dea_status recover_point(const struct dea_part_material *part_material, c
 {
   static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
   struct dea_membrane_point point;
-  dea_status status = dea_membrane_point(part_material, F, field_V_per_m, &point);
+  dea_status status = dea_membrane_point(part_material, NULL, F, field_V_per_m, &point);
   if (status != DEA_OK || !(complete(F, values) > 0)) {
     return status != DEA_OK ? status : DEA_E_DOMAIN;
   }
@@ -375,46 +376,37 @@ static dea_status recover_point(const struct dea_part_material *part_material, c
 static dea_status recover(const struct dea_element *element, const struct dea_element_input *in,
                           struct dea_recovered *out)
 {
-  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_face_shape *shape = element->basis;
   const struct dea_part_material *part_material = in->part_material;
-  double values[DEA_FLAT_NODES_MAX][DEA_FIT_VALUES], P[DEA_FLAT_NODES_MAX][6], F[6];
+  double values[DEA_FACE_NODES_MAX][DEA_FIT_VALUES], P[DEA_FACE_NODES_MAX][6], F[6];
   double field = dea_part_material_field(part_material, in->voltage_V);
   struct dea_gauss_fit fit;
   out->volume_m3 = out->volume_error = 0;
-  for (int q = 0; q < shape->gauss; q++) {
+  for (int q = 0; q < shape->points; q++) {
     double area = columns_at(shape, q, in->X, in->u, F);
     dea_status status =
         area > 0 ? recover_point(part_material, F, field, values[q], P[q]) : DEA_E_DOMAIN;
     DEA_TRY_STATUS(status);
     out->volume_m3 += part_material->thickness_m * area;
   }
-  dea_fit_create(shape->order, 0, &fit);
-  dea_recovered_set(&fit, values, out);
-  memset(out->force, 0, sizeof out->force);
-  for (int node = 0; node < out->plane_nodes; node++) {
-    for (int q = 0; q < shape->gauss; q++) {
-      double weight = fit.plane[node % fit.n][q % fit.n] * fit.plane[node / fit.n][q / fit.n];
-      for (int m = 0; m < 6; m++) {
-        out->force[node][m] += weight * part_material->thickness_m * P[q][m];
-      }
-    }
-  }
+  dea_fit_create(shape->order[0], 0, false, &fit);
+  dea_recovered_set(&fit, values, part_material->thickness_m, P[0], 2, out);
   return DEA_OK;
 }
 
 static dea_status state(const struct dea_element *element, const struct dea_element_input *in,
                         bool stress, struct dea_element_state *out)
 {
-  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_face_shape *shape = element->basis;
   double field = dea_part_material_field(in->part_material, in->voltage_V);
   double F[6];
   struct dea_membrane_point point;
-  for (int q = 0; q < shape->gauss; q++) {
+  for (int q = 0; q < shape->points; q++) {
     double area = columns_at(shape, q, in->X, in->u, F);
     if (!(area > 0 && complete(F, out->F[q]) > 0)) {
       return DEA_E_DOMAIN;
     }
-    DEA_TRY_STATUS(stress ? dea_membrane_point(in->part_material, F, field, &point) : DEA_OK);
+    DEA_TRY_STATUS(stress ? dea_membrane_point(in->part_material, NULL, F, field, &point) : DEA_OK);
     out->volume_m3[q] = in->part_material->thickness_m * area;
     out->J[q] = 1;
     out->pressure[q] = 0;
@@ -429,26 +421,27 @@ static dea_status state(const struct dea_element *element, const struct dea_elem
 
 static dea_status create(int order, int order_z, struct dea_element *out)
 {
-  struct dea_flat_shape *shape = out->basis;
+  struct dea_face_shape *shape = out->basis;
   (void)order_z;
-  out->pressures = 0;
-  dea_status status = dea_flat_shape_create(order, shape);
+  dea_face_shape_create((const int[2]){order, order}, DEA_FACE_ELEMENT, shape);
   out->nodes = shape->nodes;
-  out->points = shape->gauss;
-  return status;
+  out->points = shape->points;
+  out->pressures = 0;
+  out->value = shape->value[0];
+  out->value_width = DEA_FACE_NODES_MAX;
+  return DEA_OK;
 }
 
 const struct dea_element_type dea_element_membrane = {
     .name = "membrane",
     .per_node = 3,
     .with_potential = DEA_ELEMENT_MEMBRANE,
-    .basis_size = sizeof(struct dea_flat_shape),
+    .basis_size = sizeof(struct dea_face_shape),
     .create = create,
     .check = dea_membrane_check,
     .takes = "isotropic hyperelastic laws only",
     .evaluate = evaluate,
-    .mass = mass,
-    .mass_times = mass_times,
+    .masses = masses,
     .motion = motion,
     .metric = metric,
     .neutral_stiffness = neutral_stiffness,

@@ -1,24 +1,22 @@
-/* The basis of a membrane: flat quadrilaterals of three unknowns a node (docs/theory/membrane.md).
- */
+/* The basis of flat quadrilaterals: of a membrane, of three unknowns a node
+ * (docs/theory/membrane.md), and of the faces of other elements. */
 #pragma once
 
 #include "model/solid/element/element.h"
 #include "model/solid/point/membrane_point.h"
 
-enum {
-  DEA_FLAT_NODES_MAX = DEA_ELEMENT_LEVEL_MAX,
-  DEA_FLAT_DOFS_MAX = 3 * DEA_FLAT_NODES_MAX,
-};
+enum { DEA_FACE_NODES_MAX = DEA_ELEMENT_LEVEL_MAX, DEA_FACE_POINTS_MAX = 25 };
 
-/* Basis of one order. Nodes and Gauss points: first local axis fastest, as in a level of a
+/* Basis at points of a rule. Nodes and points: first local axis fastest, as in a level of a
  * hexahedron. */
-struct dea_flat_shape {
-  int order, nodes, gauss;
-  double value[DEA_FLAT_NODES_MAX][DEA_FLAT_NODES_MAX];    // at a Gauss point
-  double slope[DEA_FLAT_NODES_MAX][2][DEA_FLAT_NODES_MAX]; // there, by the local axes
-  double weight[DEA_FLAT_NODES_MAX];
-  double node_at[DEA_FLAT_NODES_MAX][2]; // local coordinates in [-1, 1]
+struct dea_face_shape {
+  int order[2], nodes, points;
+  double value[DEA_FACE_POINTS_MAX][DEA_FACE_NODES_MAX];
+  double slope[DEA_FACE_POINTS_MAX][2][DEA_FACE_NODES_MAX]; // by the local axes
+  double weight[DEA_FACE_POINTS_MAX];
 };
-
-/* order: 1 to DEA_HEX_ORDER_MAX; DEA_E_ARGUMENT otherwise. */
-dea_status dea_flat_shape_create(int order, struct dea_flat_shape *out);
+/* Element: as many Gauss points as nodes. Gauss: exact for products of three displacements and two
+ * of their slopes less. Nodes: the Gauss-Lobatto points, at which the nodes are. */
+enum dea_face_rule { DEA_FACE_ELEMENT, DEA_FACE_GAUSS, DEA_FACE_AT_NODES };
+/* order: along the local axes, 1 to DEA_HEX_ORDER_MAX. */
+void dea_face_shape_create(const int order[2], enum dea_face_rule rule, struct dea_face_shape *out);

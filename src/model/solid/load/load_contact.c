@@ -12,6 +12,7 @@ static const double tolerance_default = 1e-3;
 static const double gap_none = 1e-9; // of the length that gaps are compared with
 
 struct dea_contact {
+  struct dea_arena memory;                   // of all arrays
   const struct dea_surface *surface, *other; // other: NULL: the tip
   struct dea_face_shape shape;
   struct dea_indenter tip;
@@ -206,12 +207,10 @@ static double facing_gap(const struct dea_contact *c, int count, const double (*
   double n[3], from[3];
   find_nearest(c->other->order, x + 1, x[0], near);
   const double *a = near->x[1], *b = near->x[2];
-  for (int i = 0; i < 3; i++) {
-    n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    from[i] = x[0][i] - near->x[0][i];
-  }
+  dea_cross(a, b, n);
   const double length = sqrt(dot(n, n));
   for (int i = 0; i < 3; i++) {
+    from[i] = x[0][i] - near->x[0][i];
     n[i] /= length;
   }
   for (int i = 0; i < 3 * count; i++) {
@@ -302,13 +301,12 @@ static dea_status find_opposite(struct dea_context *ctx, struct dea_contact *c)
 
 static dea_status prepare(struct dea_context *ctx, struct dea_contact *c)
 {
-  dea_face_shape_create(c->surface, DEA_FACE_AT_NODES, &c->shape);
-  c->weight = dea_surface_weights(ctx, c->surface, &c->shape);
-  c->pressure = dea_alloc(ctx, count_of(c), sizeof *c->pressure);
-  c->opposite = dea_alloc(ctx, c->surface->face_count, sizeof *c->opposite);
-  c->start = dea_alloc(ctx, count_of(c), sizeof *c->start);
-  DEA_TRY_MEMORY(c->weight != NULL && c->pressure != NULL && c->opposite != NULL &&
-                 c->start != NULL);
+  dea_face_shape_create(c->surface->order, DEA_FACE_AT_NODES, &c->shape);
+  c->weight = dea_surface_weights(&c->memory, c->surface, &c->shape);
+  c->pressure = dea_arena_alloc(&c->memory, count_of(c), sizeof *c->pressure);
+  c->opposite = dea_arena_alloc(&c->memory, c->surface->face_count, sizeof *c->opposite);
+  c->start = dea_arena_alloc(&c->memory, count_of(c), sizeof *c->start);
+  DEA_TRY(ctx, dea_arena_status(&c->memory));
   return c->other != NULL ? find_opposite(ctx, c) : DEA_OK;
 }
 
@@ -324,6 +322,7 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
   }
   struct dea_contact *c = dea_alloc(ctx, 1, sizeof *c);
   DEA_TRY_MEMORY(c != NULL);
+  c->memory.ctx = ctx;
   c->surface = surface;
   c->other = options->other;
   c->tip = tip;
@@ -343,10 +342,7 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
 void dea_contact_destroy(struct dea_context *ctx, struct dea_contact *contact)
 {
   if (contact != NULL) {
-    dea_free(ctx, contact->weight);
-    dea_free(ctx, contact->pressure);
-    dea_free(ctx, contact->opposite);
-    dea_free(ctx, contact->start);
+    dea_arena_free(&contact->memory);
     dea_free(ctx, contact);
   }
 }

@@ -8,7 +8,7 @@ void dea_load_traction(const struct dea_surface *surface, const double traction_
                        double *force)
 {
   struct dea_face_shape shape;
-  dea_face_shape_create(surface, DEA_FACE_GAUSS, &shape);
+  dea_face_shape_create(surface->order, DEA_FACE_GAUSS, &shape);
   for (size_t f = 0; f < surface->face_count; f++) {
     const int *nodes = surface->nodes + f * DEA_FACE_NODES_MAX;
     double X[3 * DEA_FACE_NODES_MAX], normal[3];

@@ -25,7 +25,7 @@ dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface
   DEA_TRY_MEMORY(*out != NULL);
   (*out)->surface = surface;
   memcpy((*out)->origin, origin_m, sizeof(*out)->origin);
-  dea_face_shape_create(surface, DEA_FACE_GAUSS, &(*out)->shape);
+  dea_face_shape_create(surface->order, DEA_FACE_GAUSS, &(*out)->shape);
   return DEA_OK;
 }
 
@@ -45,14 +45,6 @@ void dea_pressure_destroy(struct dea_context *ctx, struct dea_pressure *pressure
 void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa)
 {
   pressure->goal = pressure_Pa;
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-  for (int i = 0; i < 3; i++) {
-    int j = (i + 1) % 3, k = (i + 2) % 3;
-    out[i] = a[j] * b[k] - a[k] * b[j];
-  }
 }
 
 /* r and its slopes at a point of a face. */
@@ -283,9 +275,9 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
       add_flat(s, q, 3 * f, &at, level, out);
       continue;
     }
-    cross(at.A, at.B, AB);
-    cross(at.B, at.r, Br);
-    cross(at.r, at.A, rA);
+    dea_cross(at.A, at.B, AB);
+    dea_cross(at.B, at.r, Br);
+    dea_cross(at.r, at.A, rA);
     for (int i = 0; i < 3; i++) {
       out->energy_J += f * at.r[i] * AB[i];
       for (int n = 0; n < s->nodes; n++) {

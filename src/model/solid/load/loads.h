@@ -64,7 +64,8 @@ struct dea_enclosed {
   double stiffness_Pa_per_m3; // of liquid
 };
 void dea_pressure_enclose(struct dea_pressure *pressure, const struct dea_enclosed *enclosed);
-/* V - V0 at displacements u, and the pressure there. */
+/* V - V0 at displacements u, and the pressure there; one that is given is the last goal, or how far
+ * a solve came, whatever u. */
 double dea_pressure_volume_m3(const struct dea_pressure *pressure, const double *u);
 double dea_pressure_at_Pa(struct dea_pressure *pressure, const double *u);
 /* Adds the slopes of that volume by u [node_count][3]. */

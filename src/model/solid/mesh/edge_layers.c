@@ -4,7 +4,6 @@
 #include "model/solid/mesh/edge_layers.h"
 
 #include "base/arena.h"
-#include "model/solid/mesh/places.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -319,46 +318,45 @@ static void row_place(const struct work *w, size_t of, size_t r, int i, int j, d
 }
 
 /* The moved elements, each with its rows after it. */
-static void fill(const struct work *w, struct dea_places *places, struct dea_plane_mesh *out)
+static void fill(const struct work *w, struct dea_point_map *nodes, struct dea_plane_mesh *out)
 {
   int *node = out->quads, *region = out->region;
   double x[2];
   for (size_t e = 0; e < w->mesh->quad_count; e++) {
     for (int n = 0; n < w->per; n++) {
       moved_to(w, e, n, x);
-      *node++ = dea_places_node(places, x);
+      *node++ = (int)dea_point_map_add(nodes, x);
     }
     *region++ = w->mesh->region[e];
     for (size_t of = SIDES * e; of < SIDES * (e + 1); of++) {
       for (size_t r = 0; w->width[of] > 0 && r < w->layers->rows; r++) {
         for (int n = 0; n < w->per; n++) {
           row_place(w, of, r, n % w->line, n / w->line, x);
-          *node++ = dea_places_node(places, x);
+          *node++ = (int)dea_point_map_add(nodes, x);
         }
         *region++ = w->mesh->region[e];
       }
     }
   }
-  out->node_count = places->count;
 }
 
 /* Named sides, where they are now; those of other curves that rows lie across end at them. */
-static void move_edges(const struct work *w, struct dea_places *places, int *edges)
+static void move_edges(const struct work *w, struct dea_point_map *nodes, int *edges)
 {
   const struct dea_plane_mesh *mesh = w->mesh;
   for (size_t i = 0; i < mesh->edge_count; i++) {
-    const int *nodes = mesh->edges + i * (size_t)w->line;
-    const struct side it = side_between(nodes[0], nodes[w->line - 1], 0);
+    const int *old = mesh->edges + i * (size_t)w->line;
+    const struct side it = side_between(old[0], old[w->line - 1], 0);
     const struct side *at = bsearch(&it, w->sorted, w->count, sizeof it, compare);
     for (int n = 0; n < w->line; n++) {
-      double x[2] = {mesh->x[2 * nodes[n]], mesh->x[2 * nodes[n] + 1]};
+      double x[2] = {mesh->x[2 * old[n]], mesh->x[2 * old[n] + 1]};
       for (int k = 0; at != NULL && !w->cut[at->of] && k < w->line; k++) {
         const int place = side_place(w, (int)(at->of % SIDES), k);
-        if (node_of(w, at->of / SIDES, place) == nodes[n]) {
+        if (node_of(w, at->of / SIDES, place) == old[n]) {
           moved_to(w, at->of / SIDES, place, x);
         }
       }
-      edges[i * (size_t)w->line + (size_t)n] = dea_places_node(places, x);
+      edges[i * (size_t)w->line + (size_t)n] = (int)dea_point_map_add(nodes, x);
     }
   }
 }
@@ -396,26 +394,32 @@ static size_t origin_of(const struct work *w, size_t quad)
   return e;
 }
 
-/* With rows, narrower ones around the worst element until it is a good one. False: there are none.
- */
-static bool fill_well(struct work *w, struct dea_places *places, struct dea_plane_mesh *out)
+/* With rows, narrower ones around the worst element until it is a good one. *are: whether there are
+ * any. */
+static dea_status fill_well(struct dea_context *ctx, struct work *w, struct dea_plane_mesh *out,
+                            int *edges, bool *are)
 {
   const double least = fmin(good, 0.9 * dea_plane_mesh_smallest_jacobian(w->mesh, NULL));
+  const double close = close_share * size_of(w->mesh);
   double found = 0;
+  *are = false;
   for (int i = 0; i < TRIES && found < least; i++) {
+    struct dea_point_map nodes = {.ctx = ctx, .tolerance_m = close};
     size_t worst = 0;
     if (!find_shifts(w)) {
-      return false;
+      return DEA_OK;
     }
-    dea_places_empty(places);
-    fill(w, places, out);
+    fill(w, &nodes, out);
+    move_edges(w, &nodes, edges);
+    DEA_TRY(ctx, dea_plane_mesh_set_nodes(ctx, out, &nodes));
     found = dea_plane_mesh_smallest_jacobian(out, &worst);
     const size_t first = SIDES * origin_of(w, worst);
     for (size_t c = first; c < first + SIDES && found < least; c++) {
       w->scale[class_of(w, c)] *= 0.5;
     }
   }
-  return found >= fmin(usable, least);
+  *are = found >= fmin(usable, least);
+  return DEA_OK;
 }
 
 /* The mesh with rows in the place of the one without. */
@@ -425,16 +429,12 @@ static dea_status read_rows(struct dea_context *ctx, struct work *w, struct dea_
   for (size_t k = 0; k < w->count; k++) {
     quads += w->width[k] > 0 ? w->layers->rows : 0;
   }
-  const size_t capacity = quads * (size_t)w->per;
-  struct dea_plane_mesh *out = dea_plane_mesh_create(ctx, mesh->order, capacity, quads);
+  struct dea_plane_mesh *out = dea_plane_mesh_create(ctx, mesh->order, 0, quads);
   int *edges = dea_alloc(ctx, mesh->edge_count * (size_t)w->line, sizeof *edges);
-  struct dea_places places = {0};
+  bool are = false;
   dea_status status = out != NULL && edges != NULL ? DEA_OK : DEA_E_MEMORY;
-  status = status == DEA_OK
-               ? dea_places_create(ctx, out->x, capacity, close_share * size_of(mesh), &places)
-               : status;
-  if (status == DEA_OK && fill_well(w, &places, out)) {
-    move_edges(w, &places, edges);
+  status = status == DEA_OK ? fill_well(ctx, w, out, edges, &are) : status;
+  if (status == DEA_OK && are) {
     double *x = mesh->x;
     mesh->x = out->x;
     out->x = x;
@@ -444,7 +444,6 @@ static dea_status read_rows(struct dea_context *ctx, struct work *w, struct dea_
     mesh->node_count = out->node_count;
     mesh->quad_count = quads;
   }
-  dea_places_release(ctx, &places);
   dea_free(ctx, edges);
   dea_plane_mesh_destroy(ctx, out);
   return status;

@@ -173,6 +173,12 @@ static size_t share_between(const struct dea_fibre_disc *p)
   return share_beside(rest * a, p->beside > 0 ? p->beside : p->size, finer_at_tips(p));
 }
 
+static dea_status too_many(struct dea_context *ctx)
+{
+  return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh takes at most %d elements in a row",
+                  DEA_FIBRE_DISC_LINE_MAX);
+}
+
 static dea_status lines_create(struct dea_context *ctx, const struct dea_fibre_disc *p,
                                struct lines *out)
 {
@@ -192,11 +198,7 @@ static dea_status lines_create(struct dea_context *ctx, const struct dea_fibre_d
   out->count = out->across + (p->fibres > 0 ? share_between(p) : share(out->alpha * a, p->size));
   size_t least = out->alpha > 0.51 * pi ? 4 : 2; // two for each wedge of the core
   out->count = out->count < least ? least : out->count;
-  if (out->count > DEA_FIBRE_DISC_LINE_MAX) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh takes at most %d elements in a row",
-                    DEA_FIBRE_DISC_LINE_MAX);
-  }
-  return DEA_OK;
+  return out->count > DEA_FIBRE_DISC_LINE_MAX ? too_many(ctx) : DEA_OK;
 }
 
 /* ---- maps of one sector ---- */
@@ -310,12 +312,6 @@ static void add_block(struct builder *b, void (*map)(const void *, double, doubl
 {
   b->blocks[b->block_count++] =
       (struct dea_block){map, self, cuts_s, even_cuts(b, count_t), count_s, count_t, region};
-}
-
-static dea_status too_many(struct dea_context *ctx)
-{
-  return dea_fail(ctx, DEA_E_ARGUMENT, "a mesh takes at most %d elements in a row",
-                  DEA_FIBRE_DISC_LINE_MAX);
 }
 
 /* Size of elements at a circle: fine where something ends there. */

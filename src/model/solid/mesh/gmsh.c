@@ -48,6 +48,13 @@ static double distance_to(const struct dea_gmsh_shape *shape, const double x[2])
   return least;
 }
 
+/* A curve, by its number: those of the shapes come first. */
+static const struct dea_gmsh_shape *curve_of(const struct dea_gmsh_plan *plan, size_t curve)
+{
+  return curve < plan->shape_count ? &plan->shapes[curve]
+                                   : &plan->curves[curve - plan->shape_count];
+}
+
 // The script --------------------------------------------------------------------------------------
 
 /* Ways to quadrilaterals, each for where the one before it leaves triangles or bad elements. Tried
@@ -240,14 +247,9 @@ static void write_fields(struct dea_text *out, const struct dea_gmsh_plan *plan,
                       "Field[1].TextFormat = 1;\nBackground Field = 1;\n");
     return;
   }
-  for (size_t i = 0; i < plan->shape_count; i++) {
-    if (plan->shapes[i].edge_size_m > 0) {
-      write_field(out, plan, &plan->shapes[i], ++sources, recipe);
-    }
-  }
-  for (size_t i = 0; i < plan->curve_count; i++) {
-    if (plan->curves[i].edge_size_m > 0) {
-      write_field(out, plan, &plan->curves[i], ++sources, recipe);
+  for (size_t i = 0; i < plan->shape_count + plan->curve_count; i++) {
+    if (curve_of(plan, i)->edge_size_m > 0) {
+      write_field(out, plan, curve_of(plan, i), ++sources, recipe);
     }
   }
   if (sources > 0) {
@@ -490,13 +492,6 @@ static dea_status read_elements(struct dea_context *ctx, const struct dea_gmsh_p
     mesh->quads[i] = number[mesh->quads[i]] - 1;
   }
   return DEA_OK;
-}
-
-/* A curve, by its number: those of the shapes come first. */
-static const struct dea_gmsh_shape *curve_of(const struct dea_gmsh_plan *plan, size_t curve)
-{
-  return curve < plan->shape_count ? &plan->shapes[curve]
-                                   : &plan->curves[curve - plan->shape_count];
 }
 
 /* Sides of elements that lie on a contour. before: as gmsh made them; number: as above. */

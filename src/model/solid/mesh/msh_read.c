@@ -6,7 +6,6 @@
 #include "base/context.h"
 #include "base/file.h"
 #include "base/write_file.h"
-#include "model/solid/mesh/places.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -109,15 +108,9 @@ static dea_status fault(struct reader *r, size_t line, const char *format, ...)
 /* Room for one more, zeroed. */
 static void *list_add(struct reader *r, struct list *list, size_t size)
 {
-  if (list->count == list->capacity) {
-    size_t capacity = list->capacity > 0 ? 2 * list->capacity : 64;
-    void *moved = dea_resize(r->ctx, list->data, capacity, size);
-    if (moved == NULL) {
-      r->status = r->status == DEA_OK ? DEA_E_MEMORY : r->status;
-      return memset(&r->spare, 0, sizeof r->spare);
-    }
-    list->data = moved;
-    list->capacity = capacity;
+  if (dea_array_grow(r->ctx, &list->data, list->count, &list->capacity, size) != DEA_OK) {
+    r->status = r->status == DEA_OK ? DEA_E_MEMORY : r->status;
+    return memset(&r->spare, 0, sizeof r->spare);
   }
   return memset((char *)list->data + list->count++ * size, 0, size);
 }
@@ -660,33 +653,33 @@ static dea_status add_names(struct reader *r, struct dea_plane_mesh *mesh)
 
 /* Node of the mesh at that of the file. */
 static int mesh_node(const struct reader *r, long long tag, double unit_m,
-                     struct dea_places *places)
+                     struct dea_point_map *nodes)
 {
   const struct raw_node *node = find_node(r, tag);
-  return dea_places_node(places, (const double[2]){unit_m * node->x[0], unit_m * node->x[1]});
+  return (int)dea_point_map_add(nodes, (double[2]){unit_m * node->x[0], unit_m * node->x[1]});
 }
 
 /* Nodes of a quadrilateral in the project's order, counter-clockwise. */
-static void place_quad(const struct reader *r, const struct raw_element *e, double unit_m,
-                       struct dea_places *places, int *quad)
+static dea_status place_quad(const struct reader *r, const struct raw_element *e, double unit_m,
+                             struct dea_point_map *nodes, int *quad)
 {
   static const int order_1[4] = {0, 1, 3, 2}, order_2[9] = {0, 2, 8, 6, 1, 5, 7, 3, 4};
   int per = e->kind->order + 1;
   const int *order = per == 2 ? order_1 : order_2;
   for (int n = 0; n < e->kind->nodes; n++) {
-    quad[order[n]] = mesh_node(r, e->nodes[n], unit_m, places);
+    quad[order[n]] = mesh_node(r, e->nodes[n], unit_m, nodes);
   }
+  DEA_TRY_MEMORY(!nodes->failed);
   if (e->kind->nodes == 8) { // middle of the polynomial that has no xi^2 eta^2
-    double middle[2];
+    double(*x)[2] = nodes->point, middle[2];
     for (int i = 0; i < 2; i++) {
-      const double *x = places->x + i;
-      middle[i] = 0.5 * (x[2 * quad[1]] + x[2 * quad[3]] + x[2 * quad[5]] + x[2 * quad[7]]) -
-                  0.25 * (x[2 * quad[0]] + x[2 * quad[2]] + x[2 * quad[6]] + x[2 * quad[8]]);
+      middle[i] = 0.5 * (x[quad[1]][i] + x[quad[3]][i] + x[quad[5]][i] + x[quad[7]][i]) -
+                  0.25 * (x[quad[0]][i] + x[quad[2]][i] + x[quad[6]][i] + x[quad[8]][i]);
     }
-    quad[4] = dea_places_node(places, middle);
+    quad[4] = (int)dea_point_map_add(nodes, middle);
   }
-  const double *a = places->x + 2 * quad[0], *b = places->x + 2 * quad[per - 1];
-  const double *c = places->x + 2 * quad[per * per - 1], *d = places->x + 2 * quad[per * per - per];
+  const double *a = nodes->point[quad[0]], *b = nodes->point[quad[per - 1]];
+  const double *c = nodes->point[quad[per * per - 1]], *d = nodes->point[quad[per * per - per]];
   if ((c[0] - a[0]) * (d[1] - b[1]) - (c[1] - a[1]) * (d[0] - b[0]) < 0) {
     for (int i = 0; i < per; i++) {
       for (int j = 0; j < i; j++) {
@@ -696,15 +689,17 @@ static void place_quad(const struct reader *r, const struct raw_element *e, doub
       }
     }
   }
+  return DEA_OK;
 }
 
 /* The copies of one quadrilateral, elements[i] and on; *next: behind them. */
-static dea_status add_quad(struct reader *r, size_t i, double unit_m, struct dea_places *places,
+static dea_status add_quad(struct reader *r, size_t i, double unit_m, struct dea_point_map *nodes,
                            struct dea_plane_mesh *mesh, unsigned char *within, size_t *next)
 {
   const struct raw_element *elements = r->elements.data;
   size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
-  place_quad(r, &elements[i], unit_m, places, mesh->quads + mesh->quad_count * per_quad);
+  DEA_TRY(r->ctx,
+          place_quad(r, &elements[i], unit_m, nodes, mesh->quads + mesh->quad_count * per_quad));
   memset(within, 0, mesh->group_count);
   for (*next = i; *next < r->elements.count && is_quad(&elements[*next]) &&
                   is_copy(&elements[i], &elements[*next]);
@@ -721,19 +716,20 @@ static dea_status add_quad(struct reader *r, size_t i, double unit_m, struct dea
 
 /* A line element, once for each curve that it is on. */
 static dea_status add_line(struct reader *r, const struct raw_element *e, double unit_m,
-                           struct dea_places *places, struct dea_plane_mesh *mesh)
+                           struct dea_point_map *nodes, struct dea_plane_mesh *mesh)
 {
   size_t per = (size_t)mesh->order + 1, cursor = 0, first = mesh->edge_count;
   for (long long tag; (tag = next_group(r, e, &cursor)) != 0;) {
-    size_t known = places->count, twin = first;
+    size_t known = nodes->count, twin = first;
     int *edge = mesh->edges + mesh->edge_count * per;
     int index = (int)find_physical(r, 1, tag)->index;
     if (e->kind->order != mesh->order) {
       return fault(r, e->line, "a line of another order than the quadrilaterals");
     }
     for (size_t n = 0; n < per; n++) { // both ends, then the middle
-      edge[n == 0 ? 0 : n == 1 ? per - 1 : 1] = mesh_node(r, e->nodes[n], unit_m, places);
-      if (places->count > known) {
+      edge[n == 0 ? 0 : n == 1 ? per - 1 : 1] = mesh_node(r, e->nodes[n], unit_m, nodes);
+      DEA_TRY_MEMORY(!nodes->failed);
+      if (nodes->count > known) {
         return fault(r, e->line, "a line of a physical curve is not on the side of an element");
       }
     }
@@ -748,7 +744,7 @@ static dea_status add_line(struct reader *r, const struct raw_element *e, double
 }
 
 static dea_status fill(struct reader *r, const struct survey *s, double unit_m,
-                       struct dea_places *places, struct dea_plane_mesh *mesh)
+                       struct dea_point_map *nodes, struct dea_plane_mesh *mesh)
 {
   const struct raw_element *elements = r->elements.data;
   DEA_TRY(r->ctx, add_names(r, mesh));
@@ -758,11 +754,10 @@ static dea_status fill(struct reader *r, const struct survey *s, double unit_m,
   bool enough = within != NULL && mesh->edges != NULL && mesh->edge_curve != NULL;
   dea_status status = enough ? DEA_OK : DEA_E_MEMORY;
   for (size_t i = 0; i < s->quads && status == DEA_OK;) {
-    status = add_quad(r, i, unit_m, places, mesh, within, &i);
+    status = add_quad(r, i, unit_m, nodes, mesh, within, &i);
   }
-  mesh->node_count = places->count;
   for (size_t i = s->quads; i < s->quads + s->lines && status == DEA_OK; i++) {
-    status = add_line(r, &elements[i], unit_m, places, mesh);
+    status = add_line(r, &elements[i], unit_m, nodes, mesh);
   }
   dea_free(r->ctx, within);
   return status;
@@ -785,20 +780,17 @@ static dea_status check_quality(struct reader *r, const struct dea_plane_mesh *m
 static dea_status build(struct reader *r, double unit_m, struct dea_plane_mesh **out)
 {
   struct survey s;
-  struct dea_places places = {0};
   if (r->nodes.count > 0) {
     qsort(r->nodes.data, r->nodes.count, sizeof(struct raw_node), compare_nodes);
   }
   DEA_TRY(r->ctx, check_all(r, unit_m, &s));
   sort_elements(r, &s);
-  size_t capacity = s.quads * (size_t)((s.order + 1) * (s.order + 1)) + 3; // and one line's
-  *out = dea_plane_mesh_create(r->ctx, s.order, capacity, s.quads);
+  *out = dea_plane_mesh_create(r->ctx, s.order, 0, s.quads);
   DEA_TRY_MEMORY(*out != NULL);
   (*out)->quad_count = 0;
-  DEA_TRY(r->ctx, dea_places_create(r->ctx, (*out)->x, capacity, same * s.size * unit_m, &places));
-  dea_status status = fill(r, &s, unit_m, &places, *out);
-  dea_places_release(r->ctx, &places);
-  DEA_TRY(r->ctx, status);
+  struct dea_point_map nodes = {.ctx = r->ctx, .tolerance_m = same * s.size * unit_m};
+  DEA_TRY_ELSE(r->ctx, fill(r, &s, unit_m, &nodes, *out), dea_point_map_free(&nodes));
+  DEA_TRY(r->ctx, dea_plane_mesh_set_nodes(r->ctx, *out, &nodes));
   return r->file != NULL ? check_quality(r, *out) : DEA_OK;
 }
 

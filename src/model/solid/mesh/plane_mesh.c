@@ -2,7 +2,6 @@
 
 #include "base/quadrature.h"
 #include "model/solid/mesh/grid.h"
-#include "model/solid/mesh/places.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -29,18 +28,24 @@ struct dea_plane_mesh *dea_plane_mesh_create(struct dea_context *ctx, int order,
   return mesh;
 }
 
-static void free_names(struct dea_context *ctx, char **names, size_t count)
+dea_status dea_plane_mesh_set_nodes(struct dea_context *ctx, struct dea_plane_mesh *mesh,
+                                    struct dea_point_map *nodes)
 {
-  for (size_t i = 0; i < count && names != NULL; i++) {
-    dea_free(ctx, names[i]);
+  const dea_status status = nodes->failed ? DEA_E_MEMORY : DEA_OK;
+  if (status == DEA_OK) {
+    dea_free(ctx, mesh->x);
+    mesh->x = &nodes->point[0][0];
+    mesh->node_count = nodes->count;
+    nodes->point = NULL;
   }
-  dea_free(ctx, names);
+  dea_point_map_free(nodes);
+  return status;
 }
 
 void dea_plane_mesh_forget_names(struct dea_context *ctx, struct dea_plane_mesh *mesh)
 {
-  free_names(ctx, mesh->group, mesh->group_count);
-  free_names(ctx, mesh->curve, mesh->curve_count);
+  dea_free(ctx, mesh->group);
+  dea_free(ctx, mesh->curve);
   dea_free(ctx, mesh->within);
   dea_free(ctx, mesh->edges);
   dea_free(ctx, mesh->edge_curve);
@@ -61,12 +66,13 @@ void dea_plane_mesh_destroy(struct dea_context *ctx, struct dea_plane_mesh *mesh
   }
 }
 
-static dea_status add_name(struct dea_context *ctx, char ***names, size_t *count, const char *name)
+static dea_status add_name(struct dea_context *ctx, const char ***names, size_t *count,
+                           const char *name)
 {
-  char **moved = dea_resize(ctx, *names, *count + 1, sizeof *moved);
+  const char **moved = dea_resize(ctx, *names, *count + 1, sizeof *moved);
   DEA_TRY_MEMORY(moved != NULL);
   *names = moved;
-  moved[*count] = dea_copy_text(ctx, name, strlen(name));
+  moved[*count] = dea_intern(ctx, name);
   DEA_TRY_MEMORY(moved[*count] != NULL);
   (*count)++;
   return DEA_OK;
@@ -102,7 +108,7 @@ dea_status dea_plane_mesh_region(struct dea_context *ctx, struct dea_plane_mesh 
   return DEA_OK;
 }
 
-static size_t find(char *const names[], size_t count, const char *name)
+static size_t find(const char *const names[], size_t count, const char *name)
 {
   for (size_t i = 0; i < count; i++) {
     if (strcmp(names[i], name) == 0) {
@@ -135,7 +141,7 @@ void dea_plane_mesh_middle(const struct dea_plane_mesh *mesh, size_t e, double o
 
 // Mapped blocks -----------------------------------------------------------------------------------
 
-static void add_block(const struct dea_block *block, struct dea_places *places,
+static void add_block(const struct dea_block *block, struct dea_point_map *nodes,
                       struct dea_plane_mesh *m)
 {
   double at[DEA_HEX_ORDER_MAX + 1];
@@ -149,7 +155,7 @@ static void add_block(const struct dea_block *block, struct dea_places *places,
           double x[2], fs = 0.5 * (1 + at[i]), ft = 0.5 * (1 + at[j]);
           block->map(block->self, block->cuts_s[s] + fs * (block->cuts_s[s + 1] - block->cuts_s[s]),
                      block->cuts_t[t] + ft * (block->cuts_t[t + 1] - block->cuts_t[t]), x);
-          quad[n * j + i] = dea_places_node(places, x);
+          quad[n * j + i] = (int)dea_point_map_add(nodes, x);
         }
       }
       m->region[m->quad_count++] = block->region;
@@ -160,24 +166,19 @@ static void add_block(const struct dea_block *block, struct dea_places *places,
 dea_status dea_blocks_mesh(struct dea_context *ctx, int order, const struct dea_block *blocks,
                            size_t block_count, double length_m, struct dea_plane_mesh **out)
 {
-  struct dea_places places;
-  size_t quads = 0, per_quad = (size_t)((order + 1) * (order + 1));
+  struct dea_point_map nodes = {.ctx = ctx, .tolerance_m = 1e-9 * length_m};
+  size_t quads = 0;
   *out = NULL;
   for (size_t i = 0; i < block_count; i++) {
     quads += blocks[i].count_s * blocks[i].count_t;
   }
-  struct dea_plane_mesh *mesh = dea_plane_mesh_create(ctx, order, quads * per_quad, quads);
-  if (mesh == NULL ||
-      dea_places_create(ctx, mesh->x, quads * per_quad, 1e-9 * length_m, &places) != DEA_OK) {
-    dea_plane_mesh_destroy(ctx, mesh);
-    return DEA_E_MEMORY;
-  }
+  struct dea_plane_mesh *mesh = dea_plane_mesh_create(ctx, order, 0, quads);
+  DEA_TRY_MEMORY(mesh != NULL);
   mesh->quad_count = 0;
   for (size_t i = 0; i < block_count; i++) {
-    add_block(&blocks[i], &places, mesh);
+    add_block(&blocks[i], &nodes, mesh);
   }
-  mesh->node_count = places.count;
-  dea_places_release(ctx, &places);
+  DEA_TRY_ELSE(ctx, dea_plane_mesh_set_nodes(ctx, mesh, &nodes), dea_plane_mesh_destroy(ctx, mesh));
   *out = mesh;
   return DEA_OK;
 }

@@ -2,7 +2,7 @@
  * gmsh). Extruded through plies they are the mesh of a layered device (grid.h). */
 #pragma once
 
-#include "base/context.h"
+#include "geometry/point_map.h"
 
 /* Nodes of an element lie at the products of Gauss-Lobatto points, first local axis fastest; local
  * axes turn counter-clockwise. */
@@ -16,10 +16,10 @@ struct dea_plane_mesh {
   /* Of free meshes, otherwise 0 and NULL. A region is what lies in the same groups: `within` says
    * in which. Groups may overlap. */
   size_t group_count, region_count;
-  char **group;            // [group_count], names of surfaces
+  const char **group;      // [group_count], names of surfaces, interned
   unsigned char *within;   // [region_count][group_count], 0 or 1
   size_t curve_count;      // named curves
-  char **curve;            // [curve_count]
+  const char **curve;      // [curve_count]
   size_t edge_count;       // sides of elements on named curves; one that is on two is there twice
   int *edges, *edge_curve; // [edge_count][order + 1] nodes in their order along it; [edge_count]
 };
@@ -27,6 +27,10 @@ struct dea_plane_mesh {
 /* With so many nodes and elements, all numbers 0; owned by the caller, NULL for want of memory. */
 struct dea_plane_mesh *dea_plane_mesh_create(struct dea_context *ctx, int order, size_t node_count,
                                              size_t quad_count);
+/* Gives it the points for its nodes, in place of those that it has; the map is empty then.
+ * DEA_E_MEMORY of a map that has failed. */
+dea_status dea_plane_mesh_set_nodes(struct dea_context *ctx, struct dea_plane_mesh *mesh,
+                                    struct dea_point_map *nodes);
 /* NULL is fine. */
 void dea_plane_mesh_destroy(struct dea_context *ctx, struct dea_plane_mesh *mesh);
 

@@ -1,7 +1,5 @@
 #include "model/solid/mesh/surface.h"
 
-#include "base/quadrature.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -88,57 +86,6 @@ void dea_surface_destroy(struct dea_context *ctx, struct dea_surface *surface)
   }
 }
 
-/* Points and weights of a rule along one axis of a face; returns their number. */
-static size_t line_rule(int order, enum dea_face_rule rule, double *x, double *w)
-{
-  size_t count = (size_t)order + 1, gauss = (3 * (size_t)order + 1) / 2;
-  double at[DEA_HEX_ORDER_MAX + 2], weight[DEA_HEX_ORDER_MAX + 2];
-  double value[DEA_HEX_ORDER_MAX + 1], slope[DEA_HEX_ORDER_MAX + 1];
-  dea_gauss_rule(gauss, at, weight);
-  if (rule == DEA_FACE_GAUSS) {
-    memcpy(x, at, gauss * sizeof *x);
-    memcpy(w, weight, gauss * sizeof *w);
-    return gauss;
-  }
-  dea_lobatto_nodes((size_t)order, x);
-  memset(w, 0, count * sizeof *w);
-  for (size_t q = 0; q < gauss; q++) { // integrals of the nodes' polynomials
-    dea_lagrange(count, x, at[q], value, slope);
-    for (size_t i = 0; i < count; i++) {
-      w[i] += weight[q] * value[i];
-    }
-  }
-  return count;
-}
-
-void dea_face_shape_create(const struct dea_surface *surface, enum dea_face_rule rule,
-                           struct dea_face_shape *out)
-{
-  double x[2][DEA_HEX_ORDER_MAX + 2], w[2][DEA_HEX_ORDER_MAX + 2];
-  double nodes[2][DEA_HEX_ORDER_MAX + 1];
-  double value[2][DEA_HEX_ORDER_MAX + 1], slope[2][DEA_HEX_ORDER_MAX + 1];
-  size_t count[2];
-  for (int a = 0; a < 2; a++) {
-    count[a] = line_rule(surface->order[a], rule, x[a], w[a]);
-    dea_lobatto_nodes((size_t)surface->order[a], nodes[a]);
-  }
-  out->nodes = surface->face_nodes;
-  out->points = (int)(count[0] * count[1]);
-  for (size_t p = 0; p < count[0] * count[1]; p++) {
-    const size_t at[2] = {p % count[0], p / count[0]};
-    for (int a = 0; a < 2; a++) {
-      dea_lagrange((size_t)surface->order[a] + 1, nodes[a], x[a][at[a]], value[a], slope[a]);
-    }
-    for (int n = 0; n < out->nodes; n++) {
-      int i = n % (surface->order[0] + 1), j = n / (surface->order[0] + 1);
-      out->value[p][n] = value[0][i] * value[1][j];
-      out->slope[p][0][n] = slope[0][i] * value[1][j];
-      out->slope[p][1][n] = value[0][i] * slope[1][j];
-    }
-    out->weight[p] = w[0][at[0]] * w[1][at[1]];
-  }
-}
-
 void dea_face_gather(const struct dea_surface *surface, size_t face, const double *v, double *out)
 {
   const int *nodes = surface->nodes + face * DEA_FACE_NODES_MAX;
@@ -158,10 +105,7 @@ void dea_face_normal(const struct dea_face_shape *shape, int point, const double
       }
     }
   }
-  for (int i = 0; i < 3; i++) {
-    int j = (i + 1) % 3, k = (i + 2) % 3;
-    normal[i] = t[0][j] * t[1][k] - t[0][k] * t[1][j];
-  }
+  dea_cross(t[0], t[1], normal);
 }
 
 /* Reference area of a point of a face, X at its nodes. */
@@ -172,11 +116,11 @@ static double point_area(const struct dea_face_shape *shape, int point, const do
   return shape->weight[point] * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-double *dea_surface_weights(struct dea_context *ctx, const struct dea_surface *surface,
+double *dea_surface_weights(struct dea_arena *memory, const struct dea_surface *surface,
                             const struct dea_face_shape *shape)
 {
   size_t points = (size_t)shape->points;
-  double *weights = dea_alloc(ctx, surface->face_count * points, sizeof *weights);
+  double *weights = dea_arena_alloc(memory, surface->face_count * points, sizeof *weights);
   for (size_t f = 0; f < surface->face_count && weights != NULL; f++) {
     double X[3 * DEA_FACE_NODES_MAX];
     dea_face_gather(surface, f, surface->grid->X, X);
@@ -191,7 +135,7 @@ double dea_surface_area(const struct dea_surface *surface)
 {
   struct dea_face_shape shape;
   double area = 0;
-  dea_face_shape_create(surface, DEA_FACE_GAUSS, &shape);
+  dea_face_shape_create(surface->order, DEA_FACE_GAUSS, &shape);
   for (size_t f = 0; f < surface->face_count; f++) {
     double X[3 * DEA_FACE_NODES_MAX];
     dea_face_gather(surface, f, surface->grid->X, X);

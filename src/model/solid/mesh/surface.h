@@ -1,6 +1,7 @@
 /* Surfaces of a solid: faces of its elements, on which loads act (docs/theory/loads.md). */
 #pragma once
 
+#include "model/solid/element/membrane.h"
 #include "model/solid/mesh/grid.h"
 
 /* Sides of an element: both ends of its first and second local axis, and of the thickness. */
@@ -12,8 +13,6 @@ enum dea_face {
   DEA_FACE_BOTTOM,
   DEA_FACE_TOP,
 };
-
-enum { DEA_FACE_NODES_MAX = 16, DEA_FACE_POINTS_MAX = 25 };
 
 /* Faces of one side of elements. Nodes: first local axis of the face fastest; the axes run so that
  * X,1 x X,2 points out of the element. */
@@ -36,27 +35,13 @@ dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum de
                    const void *self, struct dea_surface **out);
 void dea_surface_destroy(struct dea_context *ctx, struct dea_surface *surface);
 
-/* Basis of a face at points of a rule. */
-struct dea_face_shape {
-  int nodes, points;
-  double value[DEA_FACE_POINTS_MAX][DEA_FACE_NODES_MAX];
-  double slope[DEA_FACE_POINTS_MAX][2][DEA_FACE_NODES_MAX];
-  double weight[DEA_FACE_POINTS_MAX];
-};
-/* Gauss: exact for products of three displacements and two of their slopes less. Nodes: the
- * Gauss-Lobatto points, at which the nodes are. */
-enum dea_face_rule { DEA_FACE_GAUSS, DEA_FACE_AT_NODES };
-void dea_face_shape_create(const struct dea_surface *surface, enum dea_face_rule rule,
-                           struct dea_face_shape *out);
-
 /* Values of a field v [node_count of the grid][3] at the nodes of a face, [face_nodes][3]. */
 void dea_face_gather(const struct dea_surface *surface, size_t face, const double *v, double *out);
 /* X,1 x X,2 at a point of a face from its nodes' places [face_nodes][3]. */
 void dea_face_normal(const struct dea_face_shape *shape, int point, const double *X,
                      double normal[3]);
-/* Reference area of each point times its weight [face_count][points]; owned by the caller
- * (dea_free), NULL for want of memory. */
-double *dea_surface_weights(struct dea_context *ctx, const struct dea_surface *surface,
+/* Reference area of each point times its weight [face_count][points]; NULL for want of memory. */
+double *dea_surface_weights(struct dea_arena *memory, const struct dea_surface *surface,
                             const struct dea_face_shape *shape);
 /* Reference area [m^2]. */
 double dea_surface_area(const struct dea_surface *surface);

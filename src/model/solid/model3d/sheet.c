@@ -34,7 +34,7 @@ struct dea_sheet {
   const struct dea_layout_mesh *mesh;
   struct dea_solid *solid;
   const double *per_s;
-  struct dea_flat_shape shape;
+  struct dea_face_shape shape;
   size_t columns, channels, potentials, face_count, cell_count;
   struct face *faces;                // [face_count] by electrodes
   int *at;                           // [electrodes][columns] number of a potential; -1: none
@@ -218,9 +218,9 @@ static void number(struct dea_sheet *sheet, bool *led, bool *has)
  * of which are positive at Gauss-Lobatto points. */
 static void set_shares(struct dea_sheet *sheet, struct cell *cells)
 {
-  const struct dea_flat_shape *s = &sheet->shape;
+  const struct dea_face_shape *s = &sheet->shape;
   double sum = 0;
-  for (int q = 0; q < s->gauss; q++) {
+  for (int q = 0; q < s->points; q++) {
     double map[4] = {0};
     for (int n = 0; n < s->nodes; n++) {
       const double *x =
@@ -318,10 +318,10 @@ static PetscErrorCode add_cells(const struct dea_sheet *sheet, const struct part
 static void find_conductances(const struct dea_sheet *sheet, const int *nodes, double share,
                               double *out)
 {
-  const struct dea_flat_shape *s = &sheet->shape;
+  const struct dea_face_shape *s = &sheet->shape;
   const double *X = sheet->mesh->grid->X, *const u[2] = {sheet->u, sheet->solid->state.u};
   memset(out, 0, (size_t)(s->nodes * s->nodes) * sizeof *out);
-  for (int q = 0; q < s->gauss; q++) {
+  for (int q = 0; q < s->points; q++) {
     double g[2][3] = {{0}}, G[3] = {0}; // tangents and their products 11 22 12
     for (int n = 0; n < 3 * s->nodes; n++) {
       const size_t at = 3 * (size_t)nodes[n / 3] + (size_t)(n % 3);
@@ -349,7 +349,7 @@ static void find_conductances(const struct dea_sheet *sheet, const int *nodes, d
 static PetscErrorCode add_face(const struct dea_sheet *sheet, const struct face *face, double share,
                                const double *phi, double *right)
 {
-  double K[DEA_FLAT_NODES_MAX * DEA_FLAT_NODES_MAX];
+  double K[DEA_FACE_NODES_MAX * DEA_FACE_NODES_MAX];
   const int nodes = sheet->shape.nodes;
   const struct dea_layout_electrode *own = electrode(sheet, face->electrode);
   const size_t layers = dea_ply_layers(&sheet->mesh->layout->plies[own->ply]);
@@ -699,7 +699,8 @@ static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
 {
   const size_t electrodes = sheet->mesh->layout->electrode_count;
   double settling_s[2] = {0};
-  DEA_TRY(ctx, dea_flat_shape_create(sheet->mesh->grid->order, &sheet->shape));
+  dea_face_shape_create((const int[2]){sheet->mesh->grid->order, sheet->mesh->grid->order},
+                        DEA_FACE_ELEMENT, &sheet->shape);
   DEA_TRY(ctx, dea_solid_allreduce(ctx, allocate_places(sheet)));
   for (size_t i = 0; i < electrodes; i++) {
     sheet->first[i] = first_of(sheet, i);

@@ -313,9 +313,8 @@ static void build_rule(const struct dea_grid *g, struct rule *out)
 {
   const int orders[2] = {g->order, g->order_z};
   for (int i = 0; i < 2; i++) {
-    const struct dea_surface face = {.order = {orders[i], orders[i]},
-                                     .face_nodes = (orders[i] + 1) * (orders[i] + 1)};
-    dea_face_shape_create(&face, DEA_FACE_AT_NODES, i == 0 ? &out->plane : &out->column);
+    dea_face_shape_create((const int[2]){orders[i], orders[i]}, DEA_FACE_AT_NODES,
+                          i == 0 ? &out->plane : &out->column);
   }
 }
 

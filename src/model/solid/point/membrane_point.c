@@ -115,15 +115,9 @@ static dea_status evaluate_point(const struct dea_part_material *part_material,
 
 static const int pair_of[2][2] = {{0, 2}, {2, 1}};
 
-dea_status dea_membrane_point(const struct dea_part_material *part_material, const double F[6],
-                              double field_V_per_m, struct dea_membrane_point *out)
-{
-  return dea_membrane_point_in_time(part_material, NULL, F, field_V_per_m, out);
-}
-
-dea_status dea_membrane_point_in_time(const struct dea_part_material *part_material,
-                                      const double *viscous, const double F[6],
-                                      double field_V_per_m, struct dea_membrane_point *out)
+dea_status dea_membrane_point(const struct dea_part_material *part_material, const double *viscous,
+                              const double F[6], double field_V_per_m,
+                              struct dea_membrane_point *out)
 {
   struct dea_tension_point t;
   DEA_TRY_STATUS(evaluate_point(part_material, viscous, F, field_V_per_m, &t, out));

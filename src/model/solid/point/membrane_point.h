@@ -28,15 +28,11 @@ struct dea_membrane_point {
   enum dea_tension_state state; // DEA_TAUT when the part material is not relaxed
 };
 
-/* field_V_per_m: V/h, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */
-dea_status dea_membrane_point(const struct dea_part_material *part_material, const double F[6],
-                              double field_V_per_m, struct dea_membrane_point *out);
-
-/* The same of a step in time, viscous: B of a point (viscous.h), of which 23 and 13 are not used;
- * NULL: none. */
-dea_status dea_membrane_point_in_time(const struct dea_part_material *part_material,
-                                      const double *viscous, const double F[6],
-                                      double field_V_per_m, struct dea_membrane_point *out);
+/* field_V_per_m: V/h, 0 where there is none. viscous: of a step in time B of the point (viscous.h),
+ * of which 23 and 13 are not used; NULL: none. DEA_E_DOMAIN beyond the law's domain. */
+dea_status dea_membrane_point(const struct dea_part_material *part_material, const double *viscous,
+                              const double F[6], double field_V_per_m,
+                              struct dea_membrane_point *out);
 
 /* Membrane force P F^T / area on an orthonormal basis of the current tangent plane, of which the
  * first vector is along F_1. P: per reference length [3][2], F: of the plane [3][2], area: |F_1 x

@@ -102,5 +102,13 @@ void dea_part_material_second_stress(const double cof[9], double J, const double
 void dea_part_material_restress(const double F[9], const double cof[9], double J, double pressure,
                                 const double S[6], struct dea_point *point);
 
+/* a x b; out is neither of them. */
+static inline void dea_cross(const double a[3], const double b[3], double out[3])
+{
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 /* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
 double dea_cofactors(const double F[9], double cof[9]);

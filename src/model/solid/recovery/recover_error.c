@@ -72,8 +72,8 @@ static dea_status prepare(struct work *w)
   w->around_point = dea_arena_alloc(&w->memory, w->points.count, sizeof *w->around_point);
   w->around = dea_arena_alloc(&w->memory, w->count * dea_grid_columns(grid), sizeof *w->around);
   for (int flat = 0; flat < 2; flat++) {
-    dea_fit_create(grid->order, flat ? 0 : grid->order_z, &w->to_nodes[flat]);
-    dea_fit_create_back(grid->order, flat ? 0 : grid->order_z, &w->back[flat]);
+    dea_fit_create(grid->order, flat ? 0 : grid->order_z, false, &w->to_nodes[flat]);
+    dea_fit_create(grid->order, flat ? 0 : grid->order_z, true, &w->back[flat]);
   }
   weigh_corners(w);
   return dea_arena_status(&w->memory);
