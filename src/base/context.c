@@ -209,6 +209,20 @@ void dea_context_clear(struct dea_context *ctx)
   ctx->chain[0] = '\0';
 }
 
+bool dea_status_ends(dea_status status)
+{
+  return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED;
+}
+
+dea_status dea_forgive(struct dea_context *ctx, dea_status status)
+{
+  if (status != DEA_OK && !dea_status_ends(status)) {
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
+  return status;
+}
+
 static bool is_known(const struct dea_context *ctx, enum dea_severity severity,
                      struct dea_location location, const char *text)
 {

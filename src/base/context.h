@@ -105,6 +105,14 @@ const char *dea_context_chain(const struct dea_context *ctx);
 dea_status dea_context_status(const struct dea_context *ctx);
 /* Forgets the recorded failure (not the findings). */
 void dea_context_clear(struct dea_context *ctx);
+/* Whether nothing further can be tried after a failure: memory is short, or the run was
+ * interrupted. */
+bool dea_status_ends(dea_status status);
+/* Forgets a failure after which something else is tried: DEA_OK, or a status that ends. */
+dea_status dea_forgive(struct dea_context *ctx, dea_status status);
+
+/* Items of an array. */
+#define DEA_COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* Returns the status of `call` from the enclosing function unless it is DEA_OK. */
 #define DEA_TRY(ctx, call)                                                                         \

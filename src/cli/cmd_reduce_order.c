@@ -5,7 +5,7 @@
 #include <math.h>
 
 struct request {
-  const char *design, *output, *c, *fmu, *state_space, *spice, *mujoco;
+  const char *design, *output, *files[DEA_REDUCED_FORMATS];
   double bias_V, damping;
   struct cli_overrides overrides;
   bool json;
@@ -61,23 +61,11 @@ static dea_status build(struct dea_cli *cli, const void *user, const struct dea_
   if (status == DEA_OK && request->output != NULL) {
     status = dea_reduced_order_write(cli->ctx, order, device, request->output);
   }
-  if (status == DEA_OK && request->c != NULL) {
-    status = dea_reduced_order_write_c(cli->ctx, order, device, request->c);
-  }
-  if (status == DEA_OK && request->fmu != NULL) {
-    status = dea_reduced_order_write_fmu(cli->ctx, order, device, request->fmu);
-  }
-  if (status == DEA_OK && request->state_space != NULL) {
-    status = dea_reduced_order_write_state_space(cli->ctx, order, request->bias_V, request->damping,
-                                                 request->state_space);
-  }
-  if (status == DEA_OK && request->spice != NULL) {
-    status = dea_reduced_order_write_spice(cli->ctx, order, request->bias_V, request->damping,
-                                           request->spice);
-  }
-  if (status == DEA_OK && request->mujoco != NULL) {
-    status = dea_reduced_order_write_mujoco(cli->ctx, order, device, request->bias_V,
-                                            request->damping, request->mujoco);
+  for (int k = 0; k < DEA_REDUCED_FORMATS && status == DEA_OK; k++) {
+    status = request->files[k] == NULL
+                 ? DEA_OK
+                 : dea_reduced_order_export(cli->ctx, order, device, (enum dea_reduced_format)k,
+                                            request->bias_V, request->damping, request->files[k]);
   }
   if (status == DEA_OK) {
     print_order(request, order, device);
@@ -96,18 +84,20 @@ static const struct cli_option options[] = {
     CLI_DESIGN_ROW,
     CLI_OUTPUT_ROW(CLI_NEW_FILE, "FILE",
                    "write the model as FILE (JSON), for compute.reduced.file"),
-    {"c", 0, CLI_NEW_FILE, "FILE", "write it as C99 source, with its test", CLI_AT(c)},
+    {"c", 0, CLI_NEW_FILE, "FILE", "write it as C99 source, with its test",
+     CLI_AT(files[DEA_REDUCED_C])},
     {"fmu", 0, CLI_NEW_FILE, "FILE", "write it as a unit of FMI 3.0 for co-simulation",
-     CLI_AT(fmu)},
+     CLI_AT(files[DEA_REDUCED_FMU])},
     {"state-space", 0, CLI_NEW_FILE, "FILE",
      "write A, B, C, D of small motions at the bias (JSON), from voltage and force to displacement "
      "and charge",
-     CLI_AT(state_space)},
+     CLI_AT(files[DEA_REDUCED_STATE_SPACE])},
     {"spice", 0, CLI_NEW_FILE, "FILE",
      "write it as a subcircuit dea_film of ngspice: electrodes and displacement, at any voltage",
-     CLI_AT(spice)},
+     CLI_AT(files[DEA_REDUCED_SPICE])},
     {"mujoco", 0, CLI_NEW_FILE, "FILE",
-     "write it as a joint with an actuator of MuJoCo (XML), linear about the bias", CLI_AT(mujoco)},
+     "write it as a joint with an actuator of MuJoCo (XML), linear about the bias",
+     CLI_AT(files[DEA_REDUCED_MUJOCO])},
     {"bias", 0, CLI_TEXT, "V",
      "voltage of state space, actuator and --damping, as '3 kV'; 0 if not given", CLI_AT(bias_V),
      cli_parse_quantity, .measure = {"V", "3 kV"}},

@@ -273,7 +273,6 @@ static dea_status write_design(const struct work *w, const struct dea_optimum *b
                                          label,
                                          case_key->file->head.title.text,
                                          ""};
-  const struct dea_design_bytes file = {case_key->path, case_key->bytes, case_key->length};
   dea_text_add(&text, "%s%s optimise: the best of %s for %s.\n", written_by, DEA_VERSION,
                dea_path_name(case_key->path), dea_path_name(case_key->file->head.file));
   for (size_t k = 0; k < case_key->file->objective_count; k++) {
@@ -294,7 +293,8 @@ static dea_status write_design(const struct work *w, const struct dea_optimum *b
       dea_text_add(&text, "#   %s\n", dea_flag_line((enum dea_flag)f, line));
     }
   }
-  dea_status status = dea_device_design_text(w->ctx, &file, case_key->device, &with, &text);
+  dea_status status =
+      dea_device_design_text(w->ctx, &case_key->model.file, case_key->device, &with, &text);
   status = status == DEA_OK ? dea_text_write(w->ctx, &text, w->options->folder, name) : status;
   dea_text_free(&text);
   return status;

@@ -79,10 +79,9 @@ static void describe_design(struct dea_case_key *case_key, struct dea_context *c
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
   size_t count;
-  const struct dea_design_bytes file = {case_key->path, case_key->bytes, case_key->length};
   dea_finding_clear(ctx);
-  dea_device_params_build(ctx, &file, case_key->params, case_key->variable_count, io->p, &design,
-                          &device);
+  dea_device_params_build(ctx, &case_key->model.file, case_key->params, case_key->variable_count,
+                          io->p, &design, &device);
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = count; i-- > 0;) { // the first error
     if (findings[i].severity == DEA_ERROR) {
@@ -181,7 +180,7 @@ static dea_status find_frequency(struct dea_case_key *case_key, struct dea_model
   struct dea_load_point mode;
   struct dea_field_mesh *shapes;
   if (case_key->model.type->modes != NULL) {
-    DEA_TRY(ctx, dea_model_modes(ctx, case_key->model.type, model, &at, 1, &mode, &shapes));
+    DEA_TRY(ctx, case_key->model.type->modes(ctx, model, &at, 1, &mode, &shapes));
     dea_field_mesh_destroy(ctx, shapes);
     *out = mode.frequency_Hz;
   }
@@ -228,9 +227,7 @@ static dea_status prepare_model(struct dea_case_key *case_key)
   const bool held = force >= 0 && model->type->indent != NULL;
   const size_t n = case_key->voltage_count, count = held ? 2 * n : n;
   model->ctx = case_key->ctx;
-  model->name = case_key->path;
-  model->bytes = case_key->bytes;
-  model->length = case_key->length;
+  model->file = (struct dea_design_bytes){case_key->design, case_key->bytes, case_key->length};
   model->params = case_key->params;
   model->param_count = case_key->variable_count;
   model->built = add_identity;

@@ -68,12 +68,11 @@ static dea_status build(struct dea_context *ctx, const struct dea_case_key *case
                         double by, struct dea_design **design, struct dea_device **device)
 {
   double p[DEA_CASE_PARAMS_MAX];
-  const struct dea_design_bytes file = {case_key->path, case_key->bytes, case_key->length};
   for (size_t i = 0; i < case_key->variable_count; i++) {
     p[i] = case_key->now->p[i];
   }
   p[j] += by;
-  const dea_status status = dea_device_params_build(ctx, &file, case_key->params,
+  const dea_status status = dea_device_params_build(ctx, &case_key->model.file, case_key->params,
                                                     case_key->variable_count, p, design, device);
   if (status == DEA_E_DESIGN) { // beyond what the key takes
     dea_context_clear(ctx);

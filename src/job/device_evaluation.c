@@ -26,7 +26,7 @@ static dea_status keep_state(struct dea_device_model *model, struct dea_model *m
 {
   struct dea_context *ctx = model->ctx;
   struct dea_state now = {0}, *kept = &model->states[stop];
-  DEA_TRY(ctx, dea_model_save(ctx, model->type, m, &now));
+  DEA_TRY(ctx, model->type->save(ctx, m, &now));
   dea_state_free_values(ctx, kept);
   return dea_state_copy_values(ctx, &now, kept);
 }
@@ -50,7 +50,7 @@ static dea_status solve_from_start(struct dea_device_model *model, struct dea_mo
   struct dea_context *ctx = model->ctx;
   const struct dea_state *state = &model->start.states[stop];
   bool near = state->array_count > 0;
-  if (near && dea_model_load(ctx, model->type, m, state) != DEA_OK) {
+  if (near && model->type->load(ctx, m, state) != DEA_OK) {
     dea_context_clear(ctx); // another mesh
     near = false;
   }
@@ -73,7 +73,7 @@ static dea_status solve(struct dea_device_model *model, struct dea_model *m, siz
     return solve_from_start(model, m, stop, out);
   }
   if (model->states != NULL && model->states[stop].array_count > 0 &&
-      dea_model_load(ctx, model->type, m, &model->states[stop]) != DEA_OK) {
+      model->type->load(ctx, m, &model->states[stop]) != DEA_OK) {
     dea_context_clear(ctx); // another mesh
   }
   DEA_TRY(ctx, model->type->solve(ctx, m, model->voltage_V[stop], out));
@@ -202,9 +202,8 @@ static dea_status evaluate(struct dea_device_model *model, const double *p,
     points[k] = dea_load_point_empty();
   }
   const size_t errors = dea_finding_trial_begin(ctx);
-  const struct dea_design_bytes file = {model->name, model->bytes, model->length};
-  dea_status status =
-      dea_device_params_build(ctx, &file, model->params, model->param_count, p, &design, &device);
+  dea_status status = dea_device_params_build(ctx, &model->file, model->params, model->param_count,
+                                              p, &design, &device);
   if (status == DEA_E_DESIGN) {
     snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
     dea_context_clear(ctx);

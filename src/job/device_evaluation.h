@@ -31,8 +31,7 @@ struct dea_device_start {
 
 struct dea_device_model {
   struct dea_context *ctx;
-  const char *name, *bytes; // the design file; lent
-  size_t length;
+  struct dea_design_bytes file;
   const struct dea_model_type *type;
   const struct dea_device_param *params; // lent
   size_t param_count;
@@ -60,7 +59,7 @@ struct dea_device_model {
   char why[200]; // of the last point that could not be had
 };
 
-/* Starts that need the above to be set from name to stop_count. */
+/* Starts that need the above to be set from file to stop_count. */
 dea_status dea_device_model_begin(struct dea_device_model *model);
 void dea_device_model_end(struct dea_device_model *model);
 /* Which stops are wanted from now on [stop_count]. Where that changes, points that were kept are

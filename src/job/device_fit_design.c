@@ -286,7 +286,7 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
   struct changed *changed =
       dea_alloc(ctx, with->count * (1 + DEA_DEVICE_TIES_MAX) + 1, sizeof *changed);
   DEA_TRY_MEMORY(changed != NULL);
-  dea_status status = dea_yaml_parse(ctx, file->name, file->bytes, file->length, &document);
+  dea_status status = dea_yaml_parse(ctx, file->design->file, file->bytes, file->length, &document);
   if (status != DEA_OK) {
     dea_free(ctx, changed);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -76,9 +76,7 @@ static dea_status read_design(struct work *w)
   DEA_TRY(w->ctx, dea_device_columns_add(w->ctx, w->device));
   w->model.observed = dea_device_is_observed(w->device);
   w->model.ctx = w->ctx;
-  w->model.name = w->path;
-  w->model.bytes = w->bytes;
-  w->model.length = w->length;
+  w->model.file = (struct dea_design_bytes){w->design, w->bytes, w->length};
   return DEA_OK;
 }
 
@@ -126,8 +124,8 @@ static dea_status build_fine(struct work *w)
   dea_text_free(&text);
   dea_yaml_destroy(w->ctx, document);
   if (status == DEA_OK) {
-    w->model.bytes = w->fine;
-    w->model.length = strlen(w->fine);
+    w->model.file.bytes = w->fine;
+    w->model.file.length = strlen(w->fine);
   }
   return status;
 }
@@ -390,7 +388,7 @@ static dea_status check_count(struct work *w)
 /* A start that the design cannot be built with: its errors are told. */
 static dea_status report_start(struct work *w)
 {
-  const struct dea_design_bytes file = {w->path, w->bytes, w->length};
+  const struct dea_design_bytes file = {w->design, w->bytes, w->length};
   struct dea_design *design;
   struct dea_device *device;
   dea_status status = dea_device_params_build(w->ctx, &file, w->fit->params, w->fit->param_count,
@@ -728,7 +726,7 @@ static dea_status finish(struct work *w)
   DEA_TRY(w->ctx, report_fit(w, &slopes));
   fit->scatter = sqrt(squares / (double)(rows > 0 ? rows : 1));
   fit->evaluations = w->model.evaluations;
-  const struct dea_design_bytes file = {w->path, w->bytes, w->length};
+  const struct dea_design_bytes file = {w->design, w->bytes, w->length};
   return dea_device_design_build(w->ctx, fit, &file, w->device);
 }
 

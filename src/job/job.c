@@ -4,7 +4,7 @@
 #include "base/write_file.h"
 #include "job/run_folder.h"
 #include "result/provenance.h"
-#include "study/rerun.h"
+#include "study/study.h"
 #include "study/uncertainty.h"
 
 #include <stdio.h>
@@ -155,14 +155,13 @@ dea_status dea_job_check(struct dea_context *ctx, const struct dea_job *job, boo
   dea_status first = DEA_OK;
   char message[1024] = "";
   for (int step = 0; step < (built ? 5 : 2); step++) {
-    dea_status status =
-        step == 0   ? dea_study_check(ctx, job->studies, job->study_count, result->design)
-        : step == 1 ? check_variants(ctx, job, result->design)
-        : step == 2 ? check_models(ctx, job, each, result)
-        : step == 3
-            ? dea_study_check_models(ctx, job->models, job->model_count, job->studies,
-                                     job->study_count, result)
-            : dea_uncertainty_check(ctx, result->design, result->device, &dea_rerun_designs);
+    dea_status status = step == 0
+                            ? dea_study_check(ctx, job->studies, job->study_count, result->design)
+                        : step == 1 ? check_variants(ctx, job, result->design)
+                        : step == 2 ? check_models(ctx, job, each, result)
+                        : step == 3 ? dea_study_check_models(ctx, job->models, job->model_count,
+                                                             job->studies, job->study_count, result)
+                                    : dea_uncertainty_check(ctx, result->design, result->device);
     if (status != DEA_OK && first == DEA_OK) {
       first = status;
       snprintf(message, sizeof message, "%s", dea_context_message(ctx));
@@ -198,7 +197,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   DEA_TRY(ctx, job->status = open_folder(ctx, job, result));
   *began = true;
   const struct dea_study_services services = {job->keep.directory != NULL ? &job->keep.sink : NULL,
-                                              &dea_rerun_designs};
+                                              dea_study_run};
   const double began_s = dea_clock_s();
   for (size_t i = 0; i < job->model_count && first != DEA_E_INTERRUPTED && !job->keep.refused;
        i++) {

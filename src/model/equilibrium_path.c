@@ -271,17 +271,18 @@ static dea_status find_rest(struct dea_path *path)
   return status;
 }
 
-/* The same along the system's ease: from nothing of what is in the way to all of it, in shares that
- * are halved where Newton's method fails and doubled where it does not. */
+/* The same as what is ramped grows from nothing to all of it, in shares that are halved where
+ * Newton's method fails and doubled where it does not. */
 static dea_status ramp_to_rest(struct dea_path *path)
 {
   static const double least = 1e-6;
+  const double whole = *path->system.ramped;
   double fraction = 0, more = 0.5;
-  path->system.ramp(path->system.self, fraction);
+  *path->system.ramped = 0;
   dea_status status = find_rest(path);
   while (status == DEA_OK && fraction < 1) {
     double next = fmin(fraction + more, 1);
-    path->system.ramp(path->system.self, next);
+    *path->system.ramped = next * whole;
     dea_status tried = find_rest(path);
     if (tried == DEA_OK) {
       fraction = next;
@@ -291,7 +292,7 @@ static dea_status ramp_to_rest(struct dea_path *path)
       status = more < least ? tried : DEA_OK;
     }
   }
-  path->system.ramp(path->system.self, 1);
+  *path->system.ramped = whole;
   return status;
 }
 
@@ -309,7 +310,7 @@ dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system
   path->system = *system;
   memcpy(path->rest.u, start, system->unknowns * sizeof *start);
   dea_status status = find_rest(path);
-  if (status != DEA_OK && system->ramp != NULL) {
+  if (status != DEA_OK && system->ramped != NULL) {
     status = ramp_to_rest(path);
   }
   if (status != DEA_OK) {
@@ -332,34 +333,34 @@ const struct dea_path_state *dea_path_state_get(const struct dea_path *path)
   return &path->state;
 }
 
-/* Newton at fixed voltage from the current tangent's guess. True when it stayed on a stable branch
- * near by; otherwise the slower way along the path decides. */
-static bool seek_directly(struct dea_path *path, double voltage_V, struct dea_path_state *to)
+/* Newton at fixed voltage from a guess along the tangent of a state. True when it stayed on a
+ * stable branch near by; otherwise the slower way along the path decides. */
+static bool seek_directly(struct dea_path *path, const struct dea_path_state *from,
+                          double voltage_V, struct dea_path_state *to)
 {
   static const double nowhere[DEA_PATH_UNKNOWNS_MAX] = {0};
-  struct dea_path_state from = path->state;
-  double rise = voltage_V - from.voltage_V, change = 0;
-  if (!(fabs(from.tangent_V) > 0.05 * path->system.voltage_scale_V)) {
+  struct dea_path_state origin = *from;
+  double rise = voltage_V - from->voltage_V, change = 0;
+  if (!(fabs(from->tangent_V) > 0.05 * path->system.voltage_scale_V)) {
     return false;
   }
-  *to = from;
+  *to = *from;
   for (size_t i = 0; i < path->system.unknowns; i++) {
-    double du = from.tangent_u[i] * rise / from.tangent_V;
+    double du = from->tangent_u[i] * rise / from->tangent_V;
     to->u[i] += du;
     change = fmax(change, fabs(du));
   }
-  to->voltage_V = voltage_V;
-  from.voltage_V = voltage_V;
+  to->voltage_V = origin.voltage_V = voltage_V;
   int iterations;
-  if (change > 0.1 || correct(path, &from, nowhere, 1, 0, to, &iterations) != DEA_OK) {
+  if (change > 0.1 || correct(path, &origin, nowhere, 1, 0, to, &iterations) != DEA_OK) {
     return false;
   }
-  double sign = path->state.tangent_V > 0 ? 1 : -1;
+  double sign = from->tangent_V > 0 ? 1 : -1;
   if (finish(path, nowhere, sign * path->system.voltage_scale_V, to) != DEA_OK) {
     return false;
   }
   for (size_t i = 0; i < path->system.unknowns; i++) {
-    change = fmax(change, fabs(to->u[i] - path->state.u[i]));
+    change = fmax(change, fabs(to->u[i] - from->u[i]));
   }
   to->voltage_V = voltage_V; // to the bit
   return change < 0.1 && to->negative == 0;
@@ -371,16 +372,13 @@ static bool settle(struct dea_path *path, const struct dea_path_state *from, dou
                    const struct watch *watch, double at_0, double at_1, struct dea_path_state *out)
 {
   struct dea_load_point point;
+  struct dea_path_state exact;
   double arc;
   if (locate(path, from, ds, WATCH_VOLTAGE, watch, at_0, at_1, &arc, out, &point) != DEA_OK ||
       out->negative != 0) {
     return false;
   }
-  struct dea_path_state near = path->state, exact;
-  path->state = *out;
-  bool done = seek_directly(path, watch->voltage_end_V, &exact);
-  path->state = near;
-  if (done) {
+  if (seek_directly(path, out, watch->voltage_end_V, &exact)) {
     *out = exact;
   }
   return true;
@@ -463,7 +461,7 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
 {
   struct dea_path_state found;
   path->limited = path->slackened = path->crossed = path->thins = path->passed = false;
-  if (seek_directly(path, voltage_V, &found)) {
+  if (seek_directly(path, &path->state, voltage_V, &found)) {
     path->state = found;
     return DEA_OK;
   }
@@ -513,6 +511,14 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
 static struct dea_path *path_of(const struct dea_model *model)
 {
   return *(struct dea_path *const *)model;
+}
+
+void dea_path_model_destroy(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model != NULL) {
+    dea_path_destroy(ctx, path_of(model));
+    dea_free(ctx, model);
+  }
 }
 
 const struct dea_event *dea_path_limit(const struct dea_model *model)

@@ -23,9 +23,9 @@ struct dea_path_system {
   /* What the model says of this equilibrium; stability is filled in by the path. */
   dea_status (*point)(void *self, const double *u, double voltage_V, struct dea_load_point *out);
   double voltage_scale_V; // V_s
-  /* Share, 0 to 1, of what keeps the system from being at rest at the start it is given (stiffness
-   * of electrodes); 0: the start is its rest. The path begins with 1. NULL: none. */
-  void (*ramp)(void *self, double share);
+  /* A number of the system that keeps it from being at rest at the start it is given (stiffness of
+   * electrodes); with 0 the start is its rest. NULL: none. */
+  double *ramped;
   double pre_stretch; // total stretch over electrode_stretch
   double end_stretch; // electrode_stretch at which a search for a snapped state gives up
   const char *model;  // that it is of
@@ -41,7 +41,7 @@ struct dea_path_state {
 struct dea_path; // workspace for one system
 
 /* system: lent. start: unknowns of the equilibrium at 0 V, or near it; it is solved for, where that
- * fails along the system's ease. */
+ * fails as what is ramped grows from 0. */
 dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system *system,
                            const double *start, struct dea_path **out);
 void dea_path_destroy(struct dea_context *ctx, struct dea_path *path);
@@ -63,6 +63,9 @@ dea_status dea_path_point(struct dea_context *ctx, struct dea_path *path,
                           struct dea_load_point *out);
 
 // As functions of a model's type: the first member of such a model is its path ------------------
+
+/* Ends the path and the model, which has no other memory. */
+void dea_path_model_destroy(struct dea_context *ctx, struct dea_model *model);
 
 /* dea_path_seek, and what it says of the state. Where that is beyond a limit point on the way there
  * is a warning, and the flag DEA_FLAG_STATES until the path has snapped back. */

@@ -2,11 +2,6 @@
 
 #include <math.h>
 
-double dea_film_electrode_ratio(const struct dea_device *device)
-{
-  return 2 * device->electrode_thickness_m / device->film_thickness_unstretched_m;
-}
-
 dea_status dea_film_create(struct dea_context *ctx, const struct dea_device *device,
                            struct dea_film *out)
 {
@@ -26,7 +21,7 @@ dea_status dea_film_create(struct dea_context *ctx, const struct dea_device *dev
                       device->electrode.name, 1e6 * device->electrode_thickness_m);
     }
     out->electrode = &device->electrode;
-    out->electrode_ratio = dea_film_electrode_ratio(device);
+    out->electrode_ratio = 2 * device->electrode_thickness_m / device->film_thickness_unstretched_m;
   }
   return DEA_OK;
 }

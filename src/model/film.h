@@ -22,9 +22,6 @@ struct dea_film {
 dea_status dea_film_create(struct dea_context *ctx, const struct dea_device *device,
                            struct dea_film *out);
 
-/* Thickness of both electrodes over that of the film, unstretched. */
-double dea_film_electrode_ratio(const struct dea_device *device);
-
 /* A note where the device asks for weight, which models of a flat film do not have. model: its
  * name. */
 dea_status dea_film_report_weight(struct dea_context *ctx, const struct dea_device *device,

@@ -100,12 +100,6 @@ dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *
                       : lacks(ctx, type, "equilibrium path");
 }
 
-dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, struct dea_profile *out)
-{
-  return type->profile != NULL ? type->profile(ctx, model, out) : lacks(ctx, type, "profile");
-}
-
 static dea_status get_last(void *user, const struct dea_load_point *point)
 {
   *(struct dea_load_point *)user = *point;
@@ -154,13 +148,7 @@ static dea_status answer(struct dea_context *ctx, const struct dea_model_type *t
   for (size_t i = 0; i < ask->monitor_count; i++) {
     out[ask->column_count + i] = NAN;
   }
-  if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  if (status != DEA_OK) {
-    dea_context_clear(ctx);
-  }
-  return DEA_OK;
+  return DEA_CHAIN(ctx, dea_forgive(ctx, status));
 }
 
 /* Differences of the changed devices, which are solved each by itself. */
@@ -193,12 +181,6 @@ dea_status dea_model_gradient(struct dea_context *ctx, const struct dea_model_ty
                                                : difference(ctx, type, settings, ask, out));
 }
 
-dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, struct dea_observation *out)
-{
-  return type->observe != NULL ? type->observe(ctx, model, out) : lacks(ctx, type, "monitors");
-}
-
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_probe *tip, double depth_m,
                             struct dea_load_point *out)
@@ -207,45 +189,9 @@ dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type
                               : lacks(ctx, type, "indenter");
 }
 
-dea_status dea_model_modes(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_model *model, const struct dea_load_point *at, size_t count,
-                           struct dea_load_point *points, struct dea_field_mesh **shapes)
-{
-  return type->modes != NULL ? type->modes(ctx, model, at, count, points, shapes)
-                             : lacks(ctx, type, "vibrations");
-}
-
 dea_status dea_model_fields(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, enum dea_fields_part part,
                             struct dea_field_mesh **out)
 {
   return type->fields != NULL ? type->fields(ctx, model, part, out) : lacks(ctx, type, "fields");
-}
-
-dea_status dea_model_save(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, struct dea_state *out)
-{
-  return type->save != NULL ? type->save(ctx, model, out) : lacks(ctx, type, "state to be saved");
-}
-
-dea_status dea_model_load(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_state *state)
-{
-  return type->load != NULL ? type->load(ctx, model, state)
-                            : lacks(ctx, type, "state to go on from");
-}
-
-dea_status dea_model_begin(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_model *model, const struct dea_time_options *options,
-                           struct dea_load_point *out)
-{
-  return type->begin != NULL ? type->begin(ctx, model, options, out) : lacks(ctx, type, "time");
-}
-
-dea_status dea_model_advance(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, const struct dea_time_step *step,
-                             struct dea_load_point *out, double *error)
-{
-  return type->advance != NULL ? type->advance(ctx, model, step, out, error)
-                               : lacks(ctx, type, "time");
 }

@@ -350,12 +350,11 @@ dea_status dea_model_create_whole(struct dea_context *ctx, const struct dea_mode
                                   const struct dea_design *design, const struct dea_device *device,
                                   struct dea_model **out);
 
-/* Calls to what not every model can: DEA_E_UNSUPPORTED, with a message, where it is NULL. */
+/* Calls to what not every model can and a caller may ask of any: DEA_E_UNSUPPORTED, with a message,
+ * where it is NULL. */
 dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *type,
                           struct dea_model *model, const struct dea_path_options *options,
                           dea_point_sink points, dea_event_sink events, void *user);
-dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, struct dea_profile *out);
 /* Follows the path from rest to the first equilibrium, stable or not, with that stretch of the
  * electrode, 1 at rest, where the model then stands. DEA_E_NO_EQUILIBRIUM where the path ends
  * before; also as dea_model_path. */
@@ -367,27 +366,12 @@ dea_status dea_model_stretch(struct dea_context *ctx, const struct dea_model_typ
 dea_status dea_model_gradient(struct dea_context *ctx, const struct dea_model_type *type,
                               struct dea_model *model, const struct dea_model_settings *settings,
                               const struct dea_gradient_request *ask, double *out);
-dea_status dea_model_observe(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, struct dea_observation *out);
 dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_probe *tip, double depth_m,
                             struct dea_load_point *out);
-dea_status dea_model_modes(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_model *model, const struct dea_load_point *at, size_t count,
-                           struct dea_load_point *points, struct dea_field_mesh **shapes);
 dea_status dea_model_fields(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, enum dea_fields_part part,
                             struct dea_field_mesh **out);
-dea_status dea_model_save(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, struct dea_state *out);
-dea_status dea_model_load(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_state *state);
-dea_status dea_model_begin(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_model *model, const struct dea_time_options *options,
-                           struct dea_load_point *out);
-dea_status dea_model_advance(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, const struct dea_time_step *step,
-                             struct dea_load_point *out, double *error);
 
 /* Path of the module that holds the 3D engine, into out[size]; false when it is not here. */
 bool dea_solid_module_find(char *out, size_t size);

@@ -54,21 +54,14 @@ bool dea_solid_module_find(char *out, size_t size)
   return dea_module_find(module_file, out, size);
 }
 
-/* It cannot be unloaded: MPI. */
-static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
-{
-  const void *type = NULL;
-  DEA_TRY(ctx,
-          dea_module_open(ctx, module_file, "dea_solid_module", "the 3D engine", advice, &type));
-  *out = type;
-  return DEA_OK;
-}
+static const char model_type[] = "dea_solid_module"; // its struct dea_model_type
 
 static const struct dea_model_type *module_of(const struct dea_model *model)
 {
   return ((const struct dea_solid_head *)(const void *)model)->module;
 }
 
+/* It cannot be unloaded: MPI. */
 dea_status dea_solid_module_symbol(struct dea_context *ctx, const char *name, const void **out)
 {
   return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(
@@ -78,8 +71,9 @@ dea_status dea_solid_module_symbol(struct dea_context *ctx, const char *name, co
 static dea_status create_inside(struct dea_context *ctx, const struct dea_device *device,
                                 const struct dea_model_settings *settings, struct dea_model **out)
 {
-  const struct dea_model_type *module = NULL;
-  DEA_TRY(ctx, open_module(ctx, &module));
+  const void *found = NULL;
+  DEA_TRY(ctx, dea_solid_module_symbol(ctx, model_type, &found));
+  const struct dea_model_type *module = found;
   DEA_TRY(ctx, module->create(ctx, device, settings, out));
   ((struct dea_solid_head *)(void *)*out)->module = module;
   return DEA_OK;
@@ -103,8 +97,9 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
 
 static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
 {
-  const struct dea_model_type *module = NULL;
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(open_module(ctx, &module)));
+  const void *found = NULL;
+  DEA_TRY(ctx, dea_solid_module_symbol(ctx, model_type, &found));
+  const struct dea_model_type *module = found;
   return DEA_CHAIN(ctx, DEA_SOLID_IN_TURN(module->libraries(ctx, out, size)));
 }
 

@@ -2,7 +2,6 @@
 #include "base/file.h"
 #include "device/device.h"
 #include "result/observation.h"
-#include "study/study.h"
 #include "study/variant.h"
 
 #include <math.h>
@@ -27,63 +26,55 @@ static void name_base(const struct dea_design *design, char out[DEA_NAME_SIZE])
            stem);
 }
 
-/* The design itself: its sweep where that has been made, with the last profile. */
-static dea_status add_base(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_model *model, struct dea_result *result)
+static dea_status add(struct dea_context *ctx, const struct dea_study_job *job, const char *name,
+                      const struct dea_design *design, const struct dea_device *device)
 {
-  const struct dea_design *design = result->design;
-  char name[DEA_NAME_SIZE];
-  name_base(design, name);
-  if (dea_result_find(result, type->name, "sweep") != NULL) {
-    return dea_variant_of_sweep(ctx, type, model, study_name, name, result);
-  }
-  const struct dea_variant_run base = {study_name,
-                                       name,
-                                       result->device,
-                                       dea_model_settings_of(design),
-                                       design->compute.voltages_V,
-                                       design->compute.voltage_count};
-  return dea_variant_run(ctx, type, &base, result);
+  const struct dea_variant_run run = {study_name,
+                                      name,
+                                      device,
+                                      dea_model_settings_of(design),
+                                      design->compute.voltages_V,
+                                      design->compute.voltage_count};
+  return dea_variant_run(ctx, job, &run);
 }
 
-static dea_status add_other(struct dea_context *ctx, const struct dea_model_type *type,
-                            const struct dea_design_variant *variant, struct dea_result *result)
+/* The design itself: its sweep where that has been made, with the last profile. */
+static dea_status add_base(struct dea_context *ctx, const struct dea_study_job *job)
+{
+  const struct dea_result *result = job->result;
+  char name[DEA_NAME_SIZE];
+  name_base(result->design, name);
+  return dea_result_find(result, job->type->name, "sweep") != NULL
+             ? dea_variant_of_sweep(ctx, job, study_name, name)
+             : add(ctx, job, name, result->design, result->device);
+}
+
+static dea_status add_other(struct dea_context *ctx, const struct dea_study_job *job,
+                            const struct dea_design_variant *variant)
 {
   struct dea_device *device;
   DEA_TRY(ctx, dea_device_build(ctx, variant->design, &device));
-  const struct dea_variant_run other = {study_name,
-                                        variant->name.text,
-                                        device,
-                                        dea_model_settings_of(variant->design),
-                                        variant->design->compute.voltages_V,
-                                        variant->design->compute.voltage_count};
-  dea_status status = dea_variant_run(ctx, type, &other, result);
+  dea_status status = add(ctx, job, variant->name.text, variant->design, device);
   dea_device_destroy(ctx, device);
   return status;
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  const struct dea_design *design = result->design;
+  const struct dea_design *design = job->result->design;
   size_t total = design->compute.compare_count;
-  char what[DEA_NAME_SIZE + 20];
-  snprintf(what, sizeof what, "%s %s", type->name, study_name);
-  dea_status first = add_base(ctx, type, model, result);
-  for (size_t i = 0; i < total && first != DEA_E_INTERRUPTED && first != DEA_E_MEMORY; i++) {
+  dea_status first = add_base(ctx, job);
+  for (size_t i = 0; i < total && !dea_status_ends(first); i++) {
     if (design->compute.compare[i].design != NULL) {
-      dea_status status = add_other(ctx, type, &design->compute.compare[i], result);
-      bool ends = status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY;
-      first = first == DEA_OK || ends ? status : first;
+      dea_status status = add_other(ctx, job, &design->compute.compare[i]);
+      first = first == DEA_OK || dea_status_ends(status) ? status : first;
     }
-    dea_progress(ctx, what, i + 1, total);
+    dea_study_progress(ctx, job, study_name, i + 1, total);
   }
   return first;
 }
 
 // Tables -----------------------------------------------------------------------------------------
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static const struct dea_result_column design_columns[] = {
     DEA_TEXT_COLUMN("name", "design", "name of the design"),
@@ -220,7 +211,7 @@ static size_t find_shown(const struct dea_result *result, bool profiles,
       if (count < SHOWN_MAX && (!profiles || variant->profile.count > 0)) {
         out[count].variant = variant;
         out[count].look = dea_figure_style("", shown);
-        out[count].look.colour = order[number % (sizeof order / sizeof order[0])];
+        out[count].look.colour = order[number % DEA_COUNT(order)];
         out[count].look.marker = (int)number;
         out[count++].look.width = number < 3 ? widths[number] : widths[3];
       }
@@ -259,20 +250,20 @@ static bool is_first(const struct shown list[], size_t i, bool by_name)
   return true;
 }
 
-/* A quantity of each against V: y = factor * (member + shift). */
+/* A quantity of each against V, as dea_figure_add: where it is a bound, or where it is none. */
 struct quantity {
   int column;
   double factor, shift;
+  bool bounds;
+  char label[DEA_LABEL_SIZE];
 };
 
-/* Adds it, as dea_figure_add: where it is a bound, or where it is none. */
 static dea_status add_shown(struct dea_context *ctx, struct dea_panel *panel,
-                            const struct shown list[], size_t count, const struct quantity *q,
-                            bool bounds)
+                            const struct shown list[], size_t count, const struct quantity *q)
 {
   for (size_t i = 0; i < count; i++) {
     const struct dea_curve *curve = &list[i].variant->curve;
-    if (dea_figure_is_bound(curve, q->column) == bounds) {
+    if (dea_figure_is_bound(curve, q->column) == q->bounds) {
       DEA_TRY(ctx,
               dea_figure_add(ctx, panel, curve, q->column, q->factor, q->shift, &list[i].look));
     }
@@ -343,54 +334,55 @@ static bool moves(const struct shown list[], size_t count, int column)
   return false;
 }
 
-/* A panel a column, of what the monitors of a curve show most. */
-static dea_status show_monitors(struct dea_context *ctx, const struct shown list[], size_t count,
-                                const struct dea_curve *curve, struct dea_plot *plot)
+/* A panel a quantity that there is something of. */
+static dea_status show(struct dea_context *ctx, const struct shown list[], size_t count,
+                       const struct quantity *quantities, size_t quantity_count,
+                       struct dea_plot *plot)
 {
-  int columns[2];
-  plot->panel_count = dea_curve_headlines(ctx, curve, columns, 2);
-  for (size_t p = 0; p < plot->panel_count; p++) {
-    const struct dea_column *column = dea_column_at(ctx, columns[p]);
-    struct dea_panel *panel = &plot->panels[p];
-    DEA_TRY(ctx, add_shown(ctx, panel, list, count,
-                           &(struct quantity){columns[p], column->factor, 0}, false));
-    dea_figure_label(column, panel->y_label, DEA_LABEL_SIZE);
-    dea_panel_voltage_axis(panel);
+  struct dea_panel *panels = plot->panels;
+  size_t shown = 0;
+  for (size_t k = 0; k < quantity_count; k++) {
+    struct dea_panel *panel = &panels[shown];
+    DEA_TRY(ctx, add_shown(ctx, panel, list, count, &quantities[k]));
+    if (panel->series_count > 0) {
+      snprintf(panel->y_label, DEA_LABEL_SIZE, "%s", quantities[k].label);
+      dea_panel_voltage_axis(panel);
+      shown++;
+    }
   }
-  plot->panel_count = plot->panel_count > 0 ? plot->panel_count : 1;
-  return plot->panels[0].series_count > 0 ? add_key(ctx, &plot->panels[0], list, count, false)
-                                          : DEA_OK;
+  plot->panel_count = shown > 0 ? shown : 1;
+  if (shown == 2) { // they share the axis
+    panels[0].x_max = panels[1].x_max = fmax(panels[0].x_max, panels[1].x_max);
+    panels[1].dashed = panels[0].dashed != NULL ? NULL : panels[1].dashed; // said above
+  }
+  return shown > 0 ? add_key(ctx, &panels[0], list, count, false) : DEA_OK;
 }
 
+/* What the monitors of the first curve that has some show most, or else centre and strain. */
 static dea_status build_designs(struct dea_context *ctx, const struct dea_result *result,
                                 struct dea_plot *plot)
 {
   struct shown list[SHOWN_MAX];
-  struct dea_panel *panels = plot->panels;
-  size_t count = find_shown(result, false, list);
-  for (size_t i = 0; i < count; i++) {
-    const struct dea_curve *curve = &list[i].variant->curve;
-    int column;
-    if (dea_curve_headlines(ctx, curve, &column, 1) > 0) {
-      return show_monitors(ctx, list, count, curve, plot);
-    }
+  int columns[DEA_PLOT_PANELS_MAX];
+  size_t count = find_shown(result, false, list), found = 0;
+  for (size_t i = 0; i < count && found == 0; i++) {
+    found = dea_curve_headlines(ctx, &list[i].variant->curve, columns, DEA_PLOT_PANELS_MAX);
   }
-  int z = dea_point_column_find("centre_z_m"), stretch = dea_point_column_find("electrode_stretch");
-  plot->panel_count = moves(list, count, z) ? 2 : 1;
-  struct dea_panel *last = &panels[plot->panel_count - 1];
-  if (plot->panel_count == 2) { // bounds of many times the size are in figure design_tips
-    DEA_TRY(ctx, add_shown(ctx, &panels[0], list, count, &(struct quantity){z, 1e6, 0}, false));
-    snprintf(panels[0].y_label, DEA_LABEL_SIZE, "Centre {/:Italic z} (\302\265m)");
+  struct quantity monitors[DEA_PLOT_PANELS_MAX];
+  for (size_t k = 0; k < found; k++) {
+    const struct dea_column *column = dea_column_at(ctx, columns[k]);
+    monitors[k] = (struct quantity){.column = columns[k], .factor = column->factor};
+    dea_figure_label(column, monitors[k].label, DEA_LABEL_SIZE);
   }
-  DEA_TRY(ctx, add_shown(ctx, last, list, count, &(struct quantity){stretch, 100, -1}, false));
-  snprintf(last->y_label, DEA_LABEL_SIZE, "Electrode strain (%%)");
-  for (size_t p = 0; p < plot->panel_count; p++) {
-    dea_panel_voltage_axis(&panels[p]);
+  if (found > 0) {
+    return show(ctx, list, count, monitors, found, plot);
   }
-  last->dashed = last == panels || panels[0].dashed == NULL ? last->dashed : NULL; // said above
-  panels[0].x_max = last->x_max; // all designs have a strain, and the panels share the axis
-  return DEA_CHAIN(ctx, panels[0].series_count > 0 ? add_key(ctx, &panels[0], list, count, false)
-                                                   : DEA_OK);
+  const struct quantity of_disc[] = {
+      {dea_point_column_find("centre_z_m"), 1e6, 0, false, "Centre {/:Italic z} (\302\265m)"},
+      {dea_point_column_find("electrode_stretch"), 100, -1, false, "Electrode strain (%)"}};
+  // bounds of many times the size are in figure design_tips
+  const size_t first = moves(list, count, of_disc[0].column) ? 0 : 1;
+  return show(ctx, list, count, of_disc + first, 2 - first, plot);
 }
 
 /* What models predict, and in a panel of its own, since it is many times as large, what they know
@@ -399,32 +391,15 @@ static dea_status build_design_tips(struct dea_context *ctx, const struct dea_re
                                     struct dea_plot *plot)
 {
   struct shown list[SHOWN_MAX];
-  struct dea_panel *panels = plot->panels;
-  size_t count = find_shown(result, false, list), shown = 0;
-  const struct quantity z[2] = {{dea_point_column_find("fibre_tip_z_m"), 1e6, 0},
-                                {dea_point_column_find("fibre_tip_z_m"), 1e3, 0}};
-  for (int bounds = 0; bounds < 2; bounds++) {
-    struct dea_panel *panel = &panels[shown];
-    DEA_TRY(ctx, add_shown(ctx, panel, list, count, &z[bounds], bounds == 1));
-    if (panel->series_count > 0) {
-      snprintf(panel->y_label, DEA_LABEL_SIZE,
-               bounds == 1 ? "Bound of tip {/:Italic z} (mm)"
-                           : "Fibre tip {/:Italic z} (\302\265m)");
-      dea_panel_voltage_axis(panel);
-      shown++;
-    }
-  }
-  plot->panel_count = shown > 0 ? shown : 1;
+  const int z = dea_point_column_find("fibre_tip_z_m");
+  const struct quantity both[] = {{z, 1e6, 0, false, "Fibre tip {/:Italic z} (\302\265m)"},
+                                  {z, 1e3, 0, true, "Bound of tip {/:Italic z} (mm)"}};
   plot->second_height = 0.7;
-  if (shown == 2) { // they share the axis
-    panels[0].x_max = panels[1].x_max = fmax(panels[0].x_max, panels[1].x_max);
-    panels[1].dashed = panels[0].dashed != NULL ? NULL : panels[1].dashed; // said above
-  }
-  return shown > 0 ? add_key(ctx, &panels[0], list, count, false) : DEA_OK;
+  return show(ctx, list, find_shown(result, false, list), both, 2, plot);
 }
 
-static dea_status add(struct dea_context *ctx, struct dea_panel *panel, const struct shown *one,
-                      const double *values)
+static dea_status add_profile(struct dea_context *ctx, struct dea_panel *panel,
+                              const struct shown *one, const double *values)
 {
   const struct dea_profile_record *record = &one->variant->profile;
   struct dea_series *series;
@@ -461,8 +436,8 @@ static dea_status build_design_profiles(struct dea_context *ctx, const struct de
   struct dea_panel *last = &plot->panels[plot->panel_count - 1];
   for (size_t i = 0; i < count; i++) {
     const struct dea_profile profile = dea_profile_of_record(&list[i].variant->profile);
-    DEA_TRY(ctx, z ? add(ctx, &plot->panels[0], &list[i], profile.z_m) : DEA_OK);
-    DEA_TRY(ctx, add(ctx, last, &list[i], profile.displacement_m));
+    DEA_TRY(ctx, z ? add_profile(ctx, &plot->panels[0], &list[i], profile.z_m) : DEA_OK);
+    DEA_TRY(ctx, add_profile(ctx, last, &list[i], profile.displacement_m));
   }
   for (size_t i = 0; i < count; i++) {
     dea_figure_sides(last, &list[i].variant->profile);
@@ -502,5 +477,5 @@ const struct dea_study dea_study_compare_design = {
     .run = run,
     .tables = tables,
     .figures = figures,
-    .figure_count = sizeof figures / sizeof figures[0],
+    .figure_count = DEA_COUNT(figures),
 };

@@ -2,14 +2,11 @@
  * of answers says of each mesh is found in result/richardson.h. */
 #include "base/schema.h"
 #include "result/richardson.h"
-#include "study/study.h"
 #include "study/variant.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static const char study_name[] = "convergence";
 
@@ -44,7 +41,7 @@ static const struct dea_record record = {
     "convergence",
     "study of convergence, made when this section is there ({}) or with --study: the same on ever "
     "finer meshes (3d)",
-    fields, COUNT(fields)};
+    fields, DEA_COUNT(fields)};
 
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_settings *given)
@@ -68,21 +65,18 @@ static const struct dea_design_section section = {
 
 // Study ------------------------------------------------------------------------------------------
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none: each mesh has its own
-  const struct dea_design *design = result->design;
+  const struct dea_design *design = job->result->design;
   const struct settings *settings = dea_design_settings(design, &section)->values;
   size_t total = settings->refinement_count;
   double voltages_V[DEA_DESIGN_STOPS_MAX];
-  char what[DEA_NAME_SIZE + 16], name[DEA_NAME_SIZE];
+  char name[DEA_NAME_SIZE];
   dea_status first = DEA_OK;
-  result->convergence_tolerance = settings->tolerance.si;
-  snprintf(what, sizeof what, "%s convergence", type->name);
+  job->result->convergence_tolerance = settings->tolerance.si;
   struct dea_variant_run one = {.study = study_name,
                                 .name = name,
-                                .device = result->device,
+                                .device = job->result->device,
                                 .settings = dea_model_settings_of(design),
                                 .voltages_V = voltages_V,
                                 .voltage_count =
@@ -91,12 +85,12 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   for (size_t i = 0; i < total; i++) {
     one.settings.refinement = settings->refinements[i].si;
     snprintf(name, sizeof name, "refinement %.4g", one.settings.refinement);
-    dea_status status = dea_variant_run(ctx, type, &one, result);
+    dea_status status = dea_variant_run(ctx, job, &one);
     first = first == DEA_OK ? status : first;
-    if (status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
+    if (dea_status_ends(status)) {
       break;
     }
-    dea_progress(ctx, what, i + 1, total);
+    dea_study_progress(ctx, job, study_name, i + 1, total);
   }
   return first;
 }
@@ -112,7 +106,7 @@ static const struct dea_result_column fact_columns[] = {
 };
 static const struct dea_result_column mesh_columns[] = {
     DEA_TEXT_COLUMN("name", "mesh", "name of the mesh"),
-    DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
+    DEA_BARE("refinement", "refinement", "of the mesh"),
     DEA_RESULT_COLUMN(COUNT, "elements", "elements", .meaning = "of the mesh"),
     DEA_RESULT_COLUMN(COUNT, "nodes", "nodes", .meaning = "of the mesh"),
     DEA_RESULT_COLUMN(COUNT, "unknowns", "unknowns", .meaning = "of the mesh"),
@@ -122,12 +116,12 @@ static const struct dea_result_column mesh_columns[] = {
 };
 static const struct dea_result_column quantity_columns[] = {
     DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity", .meaning = "of load points"),
-    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage"),
+    DEA_KV("voltage_V", "V", "voltage"),
     DEA_RESULT_COLUMN(VALUE, "values", "value", .list = true, .hidden = DEA_IN_SCREEN,
                       .meaning = "on each mesh"),
     DEA_RESULT_COLUMN(NUMBER, "errors", "error", .list = true, .display_unit = "%", .factor = 100,
                       .meaning = "estimated relative error on each mesh"),
-    DEA_NUMBER_COLUMN("order", NULL, NULL, 1, "order", "observed order of convergence"),
+    DEA_BARE("order", "order", "observed order of convergence"),
     DEA_RESULT_COLUMN(VALUE, "extrapolated", "extrapolated", .meaning = "value at element size 0"),
     DEA_TEXT_COLUMN("remark", "remark", "what is wrong with the sequence"),
 };
@@ -140,12 +134,12 @@ static const struct dea_result_column enough_columns[] = {
 static const struct dea_result_column error_columns[] = {
     DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity", .meaning = "of load points"),
     DEA_TEXT_COLUMN("unit", "unit", "of the value"),
-    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage"),
-    DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
+    DEA_KV("voltage_V", "V", "voltage"),
+    DEA_BARE("refinement", "refinement", "of the mesh"),
     DEA_RESULT_COLUMN(COUNT, "unknowns", "unknowns", .meaning = "of the mesh"),
     DEA_RESULT_COLUMN(VALUE, "value", "value", .meaning = "on this mesh"),
     DEA_NUMBER_COLUMN("error", NULL, "%", 100, "estimated error", "relative error on this mesh"),
-    DEA_NUMBER_COLUMN("order", NULL, NULL, 1, "observed order", "of convergence"),
+    DEA_BARE("order", "observed order", "of convergence"),
     DEA_RESULT_COLUMN(VALUE, "extrapolated", "extrapolated", .meaning = "value at element size 0"),
     DEA_TEXT_COLUMN("remark", "remark", "on the sequence"),
 };
@@ -250,7 +244,7 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
   struct dea_convergence *c;
   DEA_TRY(ctx, dea_convergence_create(ctx, result, model, &c));
   dea_status status = DEA_OK;
-  for (size_t i = 0; c != NULL && i < COUNT(parts) && status == DEA_OK; i++) {
+  for (size_t i = 0; c != NULL && i < DEA_COUNT(parts) && status == DEA_OK; i++) {
     struct dea_result_table *table;
     status = dea_result_add_table(ctx, result, parts[i].type, model, c->mesh_count, &table);
     status = status == DEA_OK ? parts[i].put(ctx, c, table) : status;
@@ -424,5 +418,5 @@ const struct dea_study dea_study_convergence = {
     .run = run,
     .tables = tables,
     .figures = figures,
-    .figure_count = sizeof figures / sizeof figures[0],
+    .figure_count = DEA_COUNT(figures),
 };

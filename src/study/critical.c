@@ -328,8 +328,7 @@ static dea_status lowest_square(struct search *s, double voltage_V, double *squa
     *square = 0;
     return begin_again(s);
   }
-  const dea_status status =
-      dea_model_modes(s->ctx, type, s->out->model, &s->out->point, 1, &mode, &shape);
+  const dea_status status = type->modes(s->ctx, s->out->model, &s->out->point, 1, &mode, &shape);
   if (status == DEA_E_ARGUMENT) { // no density is known
     snprintf(s->out->why, sizeof s->out->why, "%.199s", dea_context_message(s->ctx));
     dea_context_clear(s->ctx);
@@ -527,6 +526,13 @@ static dea_status slopes_of_crossing(struct dea_context *ctx, const struct dea_c
   return DEA_CHAIN(ctx, status);
 }
 
+static void fill_unknown(double *slopes, size_t count)
+{
+  for (size_t i = 0; i < count; i++) {
+    slopes[i] = NAN;
+  }
+}
+
 /* Of a limit point, which is the model's own; none where it is another instability. */
 static dea_status slopes_of_limit(struct dea_context *ctx, const struct dea_critical *c,
                                   const struct dea_design_change *changes, size_t count,
@@ -541,11 +547,8 @@ static dea_status slopes_of_limit(struct dea_context *ctx, const struct dea_crit
     status = c->ask.type->gradient(ctx, c->model, &ask, slopes);
   }
   if (status == DEA_E_UNSUPPORTED) {
-    dea_context_clear(ctx);
-    for (size_t i = 0; i < count; i++) {
-      slopes[i] = NAN;
-    }
-    status = DEA_OK;
+    status = dea_forgive(ctx, status);
+    fill_unknown(slopes, count);
   }
   dea_arena_free(&memory);
   return status;
@@ -578,9 +581,7 @@ dea_status dea_critical_slopes(struct dea_context *ctx, const struct dea_critica
                                double *slopes)
 {
   if (isnan(critical->voltage_V)) {
-    for (size_t i = 0; i < change_count; i++) {
-      slopes[i] = NAN;
-    }
+    fill_unknown(slopes, change_count);
     return DEA_OK;
   }
   if (critical->ask.kind == DEA_EVENT_PULL_IN && critical->ask.type->gradient != NULL) {

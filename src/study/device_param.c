@@ -2,7 +2,8 @@
 
 #include "base/units.h"
 #include "base/write_file.h"
-#include "study/design_file.h"
+#include "design/design_schema.h"
+#include "design/design_sections.h"
 #include "study/numbers.h"
 
 #include <math.h>
@@ -10,6 +11,17 @@
 #include <string.h>
 
 enum { KEYS_MAX = DEA_DEVICE_PARAMS_MAX * (1 + DEA_DEVICE_TIES_MAX) };
+
+/* The sections of studies that a design was read with. items: room for DEA_DESIGN_SECTIONS_MAX. */
+static struct dea_design_sections sections_of(const struct dea_design *design,
+                                              const struct dea_design_section **items)
+{
+  const size_t count = design->compute.settings_count;
+  for (size_t i = 0; i < count; i++) {
+    items[i] = design->compute.settings[i].section;
+  }
+  return (struct dea_design_sections){.items = items, .count = count};
+}
 
 static const struct dea_listed *find_value(const struct dea_design *design, const char *key)
 {
@@ -24,9 +36,10 @@ static const struct dea_listed *find_value(const struct dea_design *design, cons
   return NULL;
 }
 
-dea_status dea_device_param_unknown(struct dea_context *ctx,
-                                    const struct dea_device_param_source *source,
-                                    const struct dea_label *name, const char *why)
+/* Adds the finding that a name is no parameter; why: NULL where there is no such key. */
+static dea_status report_unknown(struct dea_context *ctx,
+                                 const struct dea_device_param_source *source,
+                                 const struct dea_label *name, const char *why)
 {
   const bool plies = source->design->parts != NULL;
   struct dea_design_number *numbers = dea_alloc(ctx, DEA_NUMBERS_MAX, sizeof *numbers);
@@ -88,24 +101,26 @@ static dea_status parse_value(struct dea_context *ctx, const struct dea_design *
 static dea_status from_key(struct dea_context *ctx, const struct dea_device_param_source *source,
                            const struct dea_label *name, struct dea_device_param *out, bool *good)
 {
+  const struct dea_design_section *items[DEA_DESIGN_SECTIONS_MAX];
+  const struct dea_design_sections sections = sections_of(source->design, items);
   struct dea_design_schema schema;
-  dea_design_file_schema(&schema);
+  dea_design_schema_fill(&sections, &schema);
   const struct dea_field *field = dea_record_find(&schema.disc.record, name->text, NULL);
   *good = false;
   if (field == NULL) {
-    return dea_device_param_unknown(ctx, source, name, NULL);
+    return report_unknown(ctx, source, name, NULL);
   }
   out->whole = field->kind == DEA_FIELD_INTEGER;
   if (!dea_field_varies(field) && !(source->whole && out->whole)) {
-    return dea_device_param_unknown(ctx, source, name,
-                                    source->whole ? "is no number"
-                                    : out->whole  ? "is a whole number: only what can change "
-                                                    "little by little can be fitted"
-                                                  : "is no number that could be fitted");
+    return report_unknown(ctx, source, name,
+                          source->whole ? "is no number"
+                          : out->whole  ? "is a whole number: only what can change "
+                                          "little by little can be fitted"
+                                        : "is no number that could be fitted");
   }
   if (strncmp(name->text, "report.", 7) == 0 || strncmp(name->text, "fabrication.", 12) == 0 ||
       strncmp(name->text, "compute.voltage", 15) == 0) {
-    return dea_device_param_unknown(ctx, source, name, "does not change what the device does");
+    return report_unknown(ctx, source, name, "does not change what the device does");
   }
   out->kind = DEA_DEVICE_KEY;
   out->list = field->list_max > 0;
@@ -174,15 +189,14 @@ dea_status dea_device_param_find(struct dea_context *ctx,
   out->designed = NAN;
   *good = false;
   if (strlen(name->text) >= DEA_FIT_PARAM_NAME) {
-    return dea_device_param_unknown(ctx, source, name, NULL);
+    return report_unknown(ctx, source, name, NULL);
   }
   snprintf(out->param.name, sizeof out->param.name, "%.127s", name->text);
   DEA_TRY(ctx, from_number(ctx, source, name, out, good));
   const char *why = *good || source->design->parts != NULL ? NULL : none_of_film(name->text);
-  return *good ? DEA_OK
-         : why != NULL || source->design->parts != NULL
-             ? dea_device_param_unknown(ctx, source, name, why)
-             : from_key(ctx, source, name, out, good);
+  return *good                                          ? DEA_OK
+         : why != NULL || source->design->parts != NULL ? report_unknown(ctx, source, name, why)
+                                                        : from_key(ctx, source, name, out, good);
 }
 
 dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device_param *param,
@@ -261,6 +275,8 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
                                    const double *p, struct dea_design **design,
                                    struct dea_device **device)
 {
+  const struct dea_design_section *items[DEA_DESIGN_SECTIONS_MAX];
+  const struct dea_design_sections sections = sections_of(file->design, items);
   struct dea_override overrides[KEYS_MAX];
   char texts[KEYS_MAX][80];
   const struct dea_device_param *one;
@@ -277,8 +293,8 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
       }
     }
   }
-  DEA_TRY(ctx, dea_design_read_memory(ctx, file->name, file->bytes, file->length, overrides, keys,
-                                      design));
+  DEA_TRY(ctx, dea_design_read_memory_with(ctx, &sections, file->design->file, file->bytes,
+                                           file->length, overrides, keys, design));
   DEA_TRY(ctx, dea_device_build(ctx, *design, device));
   for (size_t j = 0; j < count; j++) {
     for (size_t k = 0; (one = dea_device_param_tie(&params[j], k)) != NULL; k++) {

@@ -21,10 +21,6 @@ dea_status dea_device_param_find(struct dea_context *ctx,
                                  const struct dea_device_param_source *source,
                                  const struct dea_label *name, struct dea_device_param *out,
                                  bool *good);
-/* Adds the finding that a name is no parameter; why: NULL where there is no such key. */
-dea_status dea_device_param_unknown(struct dea_context *ctx,
-                                    const struct dea_device_param_source *source,
-                                    const struct dea_label *name, const char *why);
 /* Takes " stretched" or " unstretched" off the end of a text, and returns it, "" for neither;
  * static storage. */
 const char *dea_device_param_split_state(char *text);
@@ -39,7 +35,7 @@ void dea_device_param_show(const struct dea_device_param *param, double value, c
 
 /* The text of a design file; lent. */
 struct dea_design_bytes {
-  const char *name; // stands for the file in messages, and says its folder
+  const struct dea_design *design; // as it was read: name and folder of the file, and its sections
   const char *bytes;
   size_t length;
 };

@@ -59,7 +59,7 @@ static const struct dea_field fields[] = {
 
 static const struct dea_record record = {study_name,
                                          "force on a rigid tip against the middle of the film (3d)",
-                                         fields, sizeof fields / sizeof fields[0]};
+                                         fields, DEA_COUNT(fields)};
 
 /* The electrode of a disc is the part that moves. */
 static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
@@ -158,10 +158,8 @@ dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type
 
 /* A model that goes from stop to stop, and where it was last pressed to at 0 V. */
 struct press {
-  const struct dea_model_type *type;
-  const struct dea_result *result;
-  struct dea_model *model; // NULL: none yet
-  struct dea_state at;     // what it was at 0 V, where it is kept
+  struct dea_study_job job; // whose model is that; NULL: none yet
+  struct dea_state at;      // what it was at 0 V, where it is kept
   bool kept;
 };
 
@@ -176,70 +174,63 @@ static bool goes_deeper(const struct dea_design *design, size_t stop)
 /* The model at 0 V, at rest or where the stop before has pressed it to. */
 static dea_status ready(struct dea_context *ctx, struct press *p, size_t stop)
 {
-  const struct dea_result *result = p->result;
-  bool kept = p->kept && goes_deeper(result->design, stop);
-  dea_status status = kept ? dea_model_load(ctx, p->type, p->model, &p->at) : DEA_OK;
+  struct dea_study_job *job = &p->job;
+  bool kept = p->kept && goes_deeper(job->result->design, stop);
+  dea_status status = kept ? job->type->load(ctx, job->model, &p->at) : DEA_OK;
   dea_state_free_values(ctx, &p->at);
   p->kept = false;
-  if (!kept && p->model != NULL) {
-    p->type->destroy(ctx, p->model);
-    p->model = NULL;
+  if (!kept && job->model != NULL) {
+    job->type->destroy(ctx, job->model);
+    job->model = NULL;
   }
-  if (!kept) {
-    status = dea_model_create(ctx, p->type, result->design, result->device, &p->model);
-  }
-  return status;
+  return kept ? status
+              : dea_model_create(ctx, job->type, job->result->design, job->result->device,
+                                 &job->model);
 }
 
 /* Keeps where the tip is pressed to if the next stop goes on from there. */
 static dea_status keep_pressed(struct dea_context *ctx, struct press *p, size_t stop)
 {
   struct dea_state now = {0};
-  if (p->type->load == NULL || !goes_deeper(p->result->design, stop + 1)) {
+  if (p->job.type->load == NULL || !goes_deeper(p->job.result->design, stop + 1)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_model_save(ctx, p->type, p->model, &now));
+  DEA_TRY(ctx, p->job.type->save(ctx, p->job.model, &now));
   DEA_TRY(ctx, dea_state_copy_values(ctx, &now, &p->at));
   p->kept = true;
   return DEA_OK;
 }
 
-/* At 0 V, to one stop. */
-static dea_status press_in(struct dea_context *ctx, struct press *p, size_t stop)
+/* Presses in for one stop at 0 V, and goes through all voltages from there. */
+static dea_status follow(struct dea_context *ctx, struct press *p, size_t stop,
+                         struct dea_curve *curve)
 {
+  const struct dea_study_job *job = &p->job;
+  const struct dea_design *design = job->result->design;
   DEA_TRY(ctx, ready(ctx, p, stop));
-  DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, p->result->design, stop));
-  return keep_pressed(ctx, p, stop);
+  DEA_TRY(ctx, dea_force_indent(ctx, job->type, job->model, design, stop));
+  DEA_TRY(ctx, keep_pressed(ctx, p, stop));
+  return dea_study_add_points(ctx, job, job->result->device, design->compute.voltages_V,
+                              design->compute.voltage_count, curve);
 }
 
-/* Presses in for one stop after the other, since each goes on from the one before, and goes through
- * all voltages from there. */
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+/* One stop after the other, since each goes on from the one before. */
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none: it has no tip
-  const struct dea_design *design = result->design;
-  const size_t stops = dea_force_stops(design);
-  struct press press = {.type = type, .result = result};
-  char what[DEA_NAME_SIZE + 8];
+  const size_t stops = dea_force_stops(job->result->design);
+  struct press press = {.job = *job};
   struct dea_curve *curve;
-  DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &curve));
-  snprintf(what, sizeof what, "%s force", type->name);
+  DEA_TRY(ctx, dea_result_add_curve(ctx, job->result, job->type->name, study_name, &curve));
   dea_status status = DEA_OK;
   for (size_t i = 0; i < stops && status == DEA_OK; i++) {
-    status = press_in(ctx, &press, i);
+    status = follow(ctx, &press, i, curve);
     if (status == DEA_OK) {
-      status =
-          dea_study_add_points(ctx, type, press.model, result->device, design->compute.voltages_V,
-                               design->compute.voltage_count, curve);
-    }
-    if (status == DEA_OK) {
-      dea_progress(ctx, what, i + 1, stops);
+      dea_study_progress(ctx, job, study_name, i + 1, stops);
     }
   }
   dea_state_free_values(ctx, &press.at);
-  if (press.model != NULL) {
-    type->destroy(ctx, press.model);
+  if (press.job.model != NULL) {
+    job->type->destroy(ctx, press.job.model);
   }
   return dea_curve_end(ctx, curve, status);
 }
@@ -281,17 +272,6 @@ static void find_stops(const struct dea_curve *curve, struct stops *out)
   sort(out);
 }
 
-/* The first such curve of any model, or NULL. */
-static const struct dea_curve *first_curve(const struct dea_result *result)
-{
-  for (size_t i = 0; i < result->curve_count; i++) {
-    if (strcmp(result->curves[i].kind, study_name) == 0) {
-      return &result->curves[i];
-    }
-  }
-  return NULL;
-}
-
 /* The points of one stop as a curve of their own; lent. */
 static struct dea_curve one_stop(const struct stops *stops, size_t i)
 {
@@ -317,7 +297,7 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
   struct dea_panel *panel = &plot->panels[0];
   struct stops stops;
   int column = dea_point_column_find("force_N");
-  find_stops(first_curve(result), &stops);
+  find_stops(dea_study_first_curve(result, study_name), &stops);
   for (size_t i = 0; i < stops.count; i++) {
     struct dea_curve part = one_stop(&stops, i);
     struct dea_series look = stop_style(i);
@@ -362,7 +342,7 @@ static dea_status build_load_line(struct dea_context *ctx, const struct dea_resu
 {
   struct dea_panel *panel = &plot->panels[0];
   struct stops stops;
-  find_stops(first_curve(result), &stops);
+  find_stops(dea_study_first_curve(result, study_name), &stops);
   if (stops.count < 2) { // one depth is no line
     return DEA_OK;
   }
@@ -389,14 +369,12 @@ static const struct dea_figure figures[] = {
 // Table ------------------------------------------------------------------------------------------
 
 static const struct dea_result_column line_columns[] = {
-    DEA_NUMBER_COLUMN("tip_depth_m", "m", "mm", 1e3, "depth",
-                      "how far the tip is pressed beyond touching the flat film"),
+    DEA_MM("tip_depth_m", "depth", "how far the tip is pressed beyond touching the flat film"),
     DEA_RESULT_COLUMN(COUNT, "voltages", "voltages", .meaning = "points of the line"),
-    DEA_NUMBER_COLUMN("first_force_N", "N", "mN", 1e3, "first force",
-                      "force on the tip at the first voltage"),
-    DEA_NUMBER_COLUMN("last_force_N", "N", "mN", 1e3, "last force", "and at the last one"),
-    DEA_NUMBER_COLUMN("trusted_voltage_V", "V", "kV", 1e-3, "trusted to",
-                      "last voltage before the first point that is not to be trusted"),
+    DEA_MN("first_force_N", "first force", "force on the tip at the first voltage"),
+    DEA_MN("last_force_N", "last force", "and at the last one"),
+    DEA_KV("trusted_voltage_V", "trusted to",
+           "last voltage before the first point that is not to be trusted"),
 };
 static const struct dea_result_table_type line_table =
     DEA_RESULT_TABLE(study_name, "lines", line_columns,
@@ -455,5 +433,5 @@ const struct dea_study dea_study_force = {
     .run = run,
     .tables = tables,
     .figures = figures,
-    .figure_count = sizeof figures / sizeof figures[0],
+    .figure_count = DEA_COUNT(figures),
 };

@@ -1,8 +1,7 @@
 /* Study "frequency": amplitude and phase of the displacements that a small AC excitation of the
  * voltage makes about a bias. */
 #include "base/schema.h"
-#include "result/observation.h"
-#include "study/study.h"
+#include "study/observe.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -51,7 +50,7 @@ static const struct dea_field fields[] = {
 
 static const struct dea_record record = {
     study_name, "study of the response to a small AC excitation of the voltage about a bias (3d)",
-    fields, sizeof fields / sizeof fields[0]};
+    fields, DEA_COUNT(fields)};
 
 /* Frequencies rise. */
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
@@ -92,33 +91,31 @@ static dea_status add_points(struct dea_context *ctx, const struct dea_layout *l
   size_t width = 0;
   dea_status status =
       answers != NULL ? dea_layout_answer_columns(&memory, layout, &columns, &width) : DEA_OK;
+  struct dea_monitor_values *values = dea_monitor_column_values(&memory, columns, width);
+  status = status == DEA_OK ? dea_arena_status(&memory) : status;
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    int *numbers = dea_arena_alloc(&memory, width, sizeof *numbers);
-    for (size_t k = 0; numbers != NULL && k < width; k++) {
-      numbers[k] = columns[k].column;
-    }
-    points[i].monitors = dea_monitor_values_create(&memory, numbers, width);
-    status = dea_arena_status(&memory);
-    for (size_t k = 0; status == DEA_OK && k < width; k++) {
+    points[i].monitors = values;
+    for (size_t k = 0; k < width; k++) {
       const struct dea_monitor_column *c = &columns[k];
       const double *part =
           answers + 2 * ((i * layout->monitor_count + c->index) * DEA_OBSERVED_MOTIONS + c->number);
-      points[i].monitors->at[k].value =
+      values->at[k].value =
           c->source == DEA_OF_PHASE ? atan2(part[1], part[0]) : hypot(part[0], part[1]);
     }
-    status = status == DEA_OK ? dea_curve_add_point(ctx, curve, &points[i]) : status;
+    status = dea_curve_add_point(ctx, curve, &points[i]);
   }
   dea_arena_free(&memory);
   return status;
 }
 
 /* All frequencies at one bias. */
-static dea_status solve_frequencies(struct dea_context *ctx, const struct dea_model_type *type,
-                                    struct dea_model *model, const struct dea_load_point *at,
-                                    size_t stop, struct dea_result *result, struct dea_curve *curve)
+static dea_status solve_frequencies(struct dea_context *ctx, const struct dea_study_job *job,
+                                    const struct dea_load_point *at, size_t stop,
+                                    struct dea_curve *curve)
 {
   (void)stop;
-  const struct settings *settings = settings_of(result->design);
+  const struct dea_model_type *type = job->type;
+  const struct settings *settings = settings_of(job->result->design);
   size_t count = (size_t)settings->points.si;
   double from = settings->from_Hz.si, to = settings->to_Hz.si;
   const struct dea_ac_excitation excitation = {
@@ -133,11 +130,12 @@ static dea_status solve_frequencies(struct dea_context *ctx, const struct dea_mo
     frequency_Hz[i] = from * pow(to / from, (double)i / (double)(count - 1));
   }
   if (status == DEA_OK) {
-    status = type->respond(ctx, model, at, &excitation, frequency_Hz, count, points);
+    status = type->respond(ctx, job->model, at, &excitation, frequency_Hz, count, points);
   }
-  const double *answers = status == DEA_OK && type->answers != NULL ? type->answers(model) : NULL;
+  const double *answers =
+      status == DEA_OK && type->answers != NULL ? type->answers(job->model) : NULL;
   if (status == DEA_OK) {
-    status = add_points(ctx, answers != NULL ? result->device->layout : NULL, points, count,
+    status = add_points(ctx, answers != NULL ? job->result->device->layout : NULL, points, count,
                         answers, curve);
   }
   dea_free(ctx, frequency_Hz);
@@ -145,23 +143,22 @@ static dea_status solve_frequencies(struct dea_context *ctx, const struct dea_mo
   return status;
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none
-  const struct settings *settings = settings_of(result->design);
+  const struct settings *settings = settings_of(job->result->design);
   double biases_V[DEA_DESIGN_STOPS_MAX];
   for (size_t i = 0; i < settings->bias_count; i++) {
     biases_V[i] = settings->biases_V[i].si;
   }
-  return dea_study_stop_by_stop(ctx, type, result, study_name, true, biases_V, settings->bias_count,
+  return dea_study_stop_by_stop(ctx, job, study_name, true, biases_V, settings->bias_count,
                                 solve_frequencies);
 }
 
-// Figures ----------------------------------------------------------------------------------------
+// What moves -------------------------------------------------------------------------------------
 
-enum { COLOURS = 6 }; // the first of them
 static const double pi = 3.14159265358979323846;
+static const double least_share = 1e-4; // of the largest amplitude: a monitor's less is not shown
+static const char along_x[] = "_x_amplitude_m";
 
 /* Points of a curve from one on that have its bias. */
 static size_t count_bias(const struct dea_curve *curve, size_t from)
@@ -186,123 +183,15 @@ static double value_at(const struct line *line, int column, size_t i)
   return column >= 0 ? dea_point_get(&line->points[i], column) : NAN;
 }
 
-/* Line of the fibre tip or the centre of a disc. */
-static struct line disc_line(const struct dea_load_point *points, size_t count, bool tip)
+/* Largest amplitude, at least 0. */
+static double largest_of(const struct line *line)
 {
-  return (struct line){points, count,
-                       dea_point_column_find(tip ? "fibre_tip_amplitude_m" : "centre_amplitude_m"),
-                       dea_point_column_find(tip ? "fibre_tip_phase_rad" : "centre_phase_rad")};
-}
-
-/* Amplitude in nm into the upper panel, phase in degrees without jumps into the lower one. */
-static dea_status add_line(struct dea_context *ctx, struct dea_plot *plot, const struct line *line,
-                           const struct dea_series *look)
-{
-  for (int p = 0; p < 2; p++) {
-    double before = 0;
-    struct dea_series *series;
-    DEA_TRY(ctx, dea_panel_add_as(ctx, &plot->panels[p], line->count, look, &series));
-    series->title[0] = p == 0 ? series->title[0] : '\0';
-    for (size_t i = 0; i < line->count; i++) {
-      double phase = value_at(line, line->phase, i); // the first is drawn from -90 to 270 degrees
-      double turns = i == 0 ? (phase < -0.5 * pi ? 1 : 0) : round((before - phase) / (2 * pi));
-      before = phase + 2 * pi * turns;
-      series->values[i] = line->points[i].frequency_Hz;
-      series->values[line->count + i] =
-          p == 0 ? 1e9 * value_at(line, line->amplitude, i) : before * 180 / pi;
-    }
+  double most = 0;
+  for (size_t i = 0; i < line->count; i++) {
+    most = fmax(most, value_at(line, line->amplitude, i)); // not of NAN
   }
-  return DEA_OK;
+  return most;
 }
-
-static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
-                            const struct dea_curve *curve)
-{
-  size_t bias = 0;
-  for (size_t from = 0; from < curve->count; bias++) {
-    const struct dea_load_point *points = curve->points + from;
-    size_t count = count_bias(curve, from);
-    bool tip = isfinite(points[0].fibre_tip_amplitude_m);
-    for (int k = 0; k < (tip ? 2 : 1) && isfinite(points[0].centre_amplitude_m); k++) {
-      struct dea_series look = {.style = k == 0 ? DEA_LINE : DEA_DASHED,
-                                .colour = (enum dea_colour)(bias % COLOURS)};
-      snprintf(look.title, sizeof look.title, "%.4g kV, %s", 1e-3 * points[0].voltage_V,
-               k == 0 ? "centre" : "fibre tip");
-      const struct line line = disc_line(points, count, k == 1);
-      DEA_TRY(ctx, add_line(ctx, plot, &line, &look));
-    }
-    from += count;
-  }
-  return DEA_OK;
-}
-
-/* Around the points; above an amplitude with room for the key. */
-static void set_limits(struct dea_panel *panel, bool amplitude)
-{
-  double low = INFINITY, high = -INFINITY;
-  for (size_t s = 0; s < panel->series_count; s++) {
-    const struct dea_series *series = &panel->series[s];
-    panel->x_min = series->values[0];
-    panel->x_max = series->values[series->count - 1];
-    for (size_t i = 0; i < series->count; i++) {
-      low = fmin(low, series->values[series->count + i]);
-      high = fmax(high, series->values[series->count + i]);
-    }
-  }
-  panel->y_min = amplitude ? low / 1.5 : 90 * floor(low / 90 - 0.05);
-  panel->y_max = amplitude ? high * 1.5 : 90 * ceil(high / 90 + 0.05);
-}
-
-/* Of two panels with lines. axis: of the displacement, 0: it is told elsewhere. */
-static void finish(struct dea_plot *plot, double ripple_V, char axis)
-{
-  plot->panel_count = 2;
-  for (int p = 0; p < 2; p++) {
-    struct dea_panel *panel = &plot->panels[p];
-    snprintf(panel->x_label, sizeof panel->x_label, "Frequency {/:Italic f} (Hz)");
-    set_limits(panel, p == 0);
-    panel->logarithmic = p == 0;
-    panel->logarithmic_x = p == 1;
-    panel->y_step = p == 1 ? 90 : 0;
-  }
-  char along[32] = "";
-  if (axis != 0) {
-    snprintf(along, sizeof along, " of {/:Italic %c}", axis);
-  }
-  snprintf(plot->panels[0].y_label, sizeof plot->panels[0].y_label, "Amplitude%s for %.4g V (nm)",
-           along, ripple_V);
-  snprintf(plot->panels[1].y_label, sizeof plot->panels[1].y_label, "Phase (degrees)");
-  plot->panels[0].key = "top left samplen 2";
-  plot->second_height = 0.7;
-}
-
-/* Amplitude of the excitation; NAN where there is no such curve. */
-static double ripple_of(const struct dea_result *result)
-{
-  double ripple_V = NAN;
-  for (size_t i = 0; i < result->curve_count; i++) {
-    const struct dea_curve *curve = &result->curves[i];
-    if (strcmp(curve->kind, study_name) == 0 && curve->count > 0) {
-      ripple_V = curve->points[0].ripple_V;
-    }
-  }
-  return ripple_V;
-}
-
-static dea_status build(struct dea_context *ctx, const struct dea_result *result,
-                        struct dea_plot *plot)
-{
-  for (size_t i = 0; i < result->curve_count; i++) {
-    if (strcmp(result->curves[i].kind, study_name) == 0) {
-      DEA_TRY(ctx, add_curve(ctx, plot, &result->curves[i]));
-    }
-  }
-  finish(plot, ripple_of(result), 0);
-  return DEA_OK;
-}
-
-static const double least_share = 1e-4; // of the largest amplitude: less is not drawn
-static const char along_x[] = "_x_amplitude_m";
 
 /* Column of the same monitor as one of an amplitude along x: of its amplitude or phase along an
  * axis; -1: none. */
@@ -323,16 +212,12 @@ static bool is_monitor(const struct dea_context *ctx, const struct dea_curve *cu
          dea_points_have(curve->points, curve->count, column);
 }
 
-/* Largest amplitude of a monitor along an axis over some points, at least 0. */
-static double largest_along(const struct dea_context *ctx, const struct dea_load_point *points,
-                            size_t count, int x_column, size_t axis)
+/* Line of a monitor's motion along an axis at some points. */
+static struct line monitor_line(const struct dea_context *ctx, const struct dea_load_point *points,
+                                size_t count, int x_column, size_t axis)
 {
-  const int column = column_along(ctx, x_column, axis, "amplitude_m");
-  double most = 0;
-  for (size_t i = 0; i < count && column >= 0; i++) {
-    most = fmax(most, dea_point_get(&points[i], column)); // not of NAN
-  }
-  return most;
+  return (struct line){points, count, column_along(ctx, x_column, axis, "amplitude_m"),
+                       column_along(ctx, x_column, axis, "phase_rad")};
 }
 
 /* Axis along which a monitor moves most, z where it does not; *largest: how much. */
@@ -342,7 +227,8 @@ static size_t main_axis(const struct dea_context *ctx, const struct dea_load_poi
   size_t axis = 2;
   *largest = 0;
   for (size_t k = 0; k < 3; k++) {
-    const double most = largest_along(ctx, points, count, x_column, k);
+    const struct line line = monitor_line(ctx, points, count, x_column, k);
+    const double most = largest_of(&line);
     axis = most > *largest ? k : axis;
     *largest = fmax(*largest, most);
   }
@@ -367,69 +253,152 @@ static size_t common_axis(const struct dea_context *ctx, const struct dea_curve 
   return axis;
 }
 
-/* Line of a monitor's motion along an axis at some points. */
-static struct line monitor_line(const struct dea_context *ctx, const struct dea_load_point *points,
-                                size_t count, int x_column, size_t axis)
-{
-  return (struct line){points, count, column_along(ctx, x_column, axis, "amplitude_m"),
-                       column_along(ctx, x_column, axis, "phase_rad")};
-}
+/* One of what moves about a bias: centre and fibre tip of a disc, then the monitors. */
+struct mover {
+  int next; // where to look for the next one; at first 0
+  bool monitor;
+  size_t axis; // of a monitor
+  char name[DEA_NAME_SIZE];
+  struct line line;
+};
 
-/* Name of a monitor: its title is "amplitude NAME x". */
-static void name_of(const struct dea_context *ctx, int x_column, char out[DEA_NAME_SIZE])
+/* The next of them about the bias of a curve's point `from`, of monitors the motion along an axis,
+ * 3: that along which each moves most. False: there is no more. */
+static bool find_mover(const struct dea_context *ctx, const struct dea_curve *curve, size_t from,
+                       size_t axis, struct mover *m)
 {
-  const char *title = dea_column_at(ctx, x_column)->header;
-  const size_t before = strlen("amplitude "), length = strlen(title);
-  snprintf(out, DEA_NAME_SIZE, "%.*s", length > before + 2 ? (int)(length - before - 2) : 0,
-           title + before);
-}
-
-/* Monitors at one bias, a style each, of at least that much; from: its first point. */
-static dea_status add_monitors(struct dea_context *ctx, struct dea_plot *plot,
-                               const struct dea_curve *curve, size_t from, size_t axis,
-                               double least, enum dea_colour colour)
-{
-  static const enum dea_series_style styles[] = {DEA_LINE, DEA_DASHED, DEA_THIN};
   const struct dea_load_point *points = curve->points + from;
-  size_t monitor = 0;
-  for (int c = 0; c < dea_column_count(ctx); c++) {
-    const size_t count = count_bias(curve, from);
-    if (!is_monitor(ctx, curve, c)) {
-      continue;
+  const size_t count = count_bias(curve, from), before = strlen("amplitude ");
+  while (m->next < dea_column_count(ctx)) {
+    const int c = m->next++;
+    double most;
+    m->monitor = is_monitor(ctx, curve, c);
+    if (m->monitor) { // its title is "amplitude NAME x"
+      const char *title = dea_column_at(ctx, c)->header;
+      const size_t length = strlen(title);
+      snprintf(m->name, sizeof m->name, "%.*s",
+               length > before + 2 ? (int)(length - before - 2) : 0, title + before);
+      m->axis = axis < 3 ? axis : main_axis(ctx, points, count, c, &most);
+      m->line = monitor_line(ctx, points, count, c, m->axis);
+      return true;
     }
-    struct dea_series look = {.style = styles[monitor++ % (sizeof styles / sizeof styles[0])],
-                              .colour = colour};
-    char name[DEA_NAME_SIZE], title[DEA_LABEL_SIZE];
-    name_of(ctx, c, name);
-    snprintf(title, sizeof title, "%.4g kV, %.60s", 1e-3 * points[0].voltage_V, name);
-    dea_label_escape(title, look.title, sizeof look.title);
-    if (largest_along(ctx, points, count, c, axis) > least) {
-      const struct line line = monitor_line(ctx, points, count, c, axis);
-      DEA_TRY(ctx, add_line(ctx, plot, &line, &look));
+    const bool tip = c == 1;
+    if (c < 2) {
+      snprintf(m->name, sizeof m->name, "%s", tip ? "fibre tip" : "centre");
+      m->line =
+          (struct line){points, count,
+                        dea_point_column_find(tip ? "fibre_tip_amplitude_m" : "centre_amplitude_m"),
+                        dea_point_column_find(tip ? "fibre_tip_phase_rad" : "centre_phase_rad")};
+      if (isfinite(value_at(&m->line, m->line.amplitude, 0))) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Figures ----------------------------------------------------------------------------------------
+
+enum { COLOURS = 6 }; // the first of them
+
+/* Amplitude in nm into the upper panel, phase in degrees without jumps into the lower one. */
+static dea_status add_line(struct dea_context *ctx, struct dea_plot *plot, const struct line *line,
+                           const struct dea_series *look)
+{
+  for (int p = 0; p < 2; p++) {
+    double before = 0;
+    struct dea_series *series;
+    DEA_TRY(ctx, dea_panel_add_as(ctx, &plot->panels[p], line->count, look, &series));
+    series->title[0] = p == 0 ? series->title[0] : '\0';
+    for (size_t i = 0; i < line->count; i++) {
+      double phase = value_at(line, line->phase, i); // the first is drawn from -90 to 270 degrees
+      double turns = i == 0 ? (phase < -0.5 * pi ? 1 : 0) : round((before - phase) / (2 * pi));
+      before = phase + 2 * pi * turns;
+      series->values[i] = line->points[i].frequency_Hz;
+      series->values[line->count + i] =
+          p == 0 ? 1e9 * value_at(line, line->amplitude, i) : before * 180 / pi;
     }
   }
   return DEA_OK;
 }
 
-/* A colour a bias, a style a monitor. */
-static dea_status build_monitors(struct dea_context *ctx, const struct dea_result *result,
-                                 struct dea_plot *plot)
+/* A colour a bias, a style each that moves: monitors by at least that much along an axis, or else
+ * places of the disc. */
+static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
+                            const struct dea_curve *curve, bool monitors, size_t axis, double least)
 {
-  size_t axis = 2;
-  for (size_t k = 0; k < result->curve_count; k++) {
-    const struct dea_curve *curve = &result->curves[k];
-    double largest;
-    size_t bias = 0;
-    if (strcmp(curve->kind, study_name) != 0) {
-      continue;
-    }
-    axis = common_axis(ctx, curve, &largest);
-    for (size_t from = 0; from < curve->count; from += count_bias(curve, from)) {
-      DEA_TRY(ctx, add_monitors(ctx, plot, curve, from, axis, least_share * largest,
-                                (enum dea_colour)(bias++ % COLOURS)));
+  static const enum dea_series_style styles[] = {DEA_LINE, DEA_DASHED, DEA_THIN};
+  size_t bias = 0;
+  for (size_t from = 0; from < curve->count; from += count_bias(curve, from), bias++) {
+    struct mover m = {.next = 0};
+    size_t number = 0;
+    while (find_mover(ctx, curve, from, axis, &m)) {
+      if (m.monitor != monitors) {
+        continue;
+      }
+      struct dea_series look = {.style = styles[number++ % DEA_COUNT(styles)],
+                                .colour = (enum dea_colour)(bias % COLOURS)};
+      char title[DEA_LABEL_SIZE];
+      snprintf(title, sizeof title, "%.4g kV, %.60s", 1e-3 * curve->points[from].voltage_V, m.name);
+      dea_label_escape(title, look.title, sizeof look.title);
+      if (!monitors || largest_of(&m.line) > least) {
+        DEA_TRY(ctx, add_line(ctx, plot, &m.line, &look));
+      }
     }
   }
-  finish(plot, ripple_of(result), "xyz"[axis]);
+  return DEA_OK;
+}
+
+/* Around the points; above an amplitude with room for the key. */
+static void set_limits(struct dea_panel *panel, bool amplitude)
+{
+  double low = INFINITY, high = -INFINITY;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    const struct dea_series *series = &panel->series[s];
+    panel->x_min = series->values[0];
+    panel->x_max = series->values[series->count - 1];
+    for (size_t i = 0; i < series->count; i++) {
+      low = fmin(low, series->values[series->count + i]);
+      high = fmax(high, series->values[series->count + i]);
+    }
+  }
+  panel->y_min = amplitude ? low / 1.5 : 90 * floor(low / 90 - 0.05);
+  panel->y_max = amplitude ? high * 1.5 : 90 * ceil(high / 90 + 0.05);
+}
+
+/* bode, bode_monitors */
+static dea_status build(struct dea_context *ctx, const struct dea_result *result,
+                        struct dea_plot *plot)
+{
+  const bool monitors = strcmp(plot->name, "bode_monitors") == 0;
+  double ripple_V = NAN, largest = 0;
+  size_t axis = 2;
+  char along[32] = "";
+  for (size_t i = 0; i < result->curve_count; i++) {
+    const struct dea_curve *curve = &result->curves[i];
+    if (strcmp(curve->kind, study_name) == 0 && curve->count > 0) {
+      ripple_V = curve->points[0].ripple_V;
+      axis = monitors ? common_axis(ctx, curve, &largest) : axis;
+      DEA_TRY(ctx, add_curve(ctx, plot, curve, monitors, axis, least_share * largest));
+    }
+  }
+  plot->panel_count = 2;
+  for (int p = 0; p < 2; p++) {
+    struct dea_panel *panel = &plot->panels[p];
+    snprintf(panel->x_label, sizeof panel->x_label, "Frequency {/:Italic f} (Hz)");
+    set_limits(panel, p == 0);
+    panel->logarithmic = p == 0;
+    panel->logarithmic_x = p == 1;
+    panel->y_step = p == 1 ? 90 : 0;
+  }
+  if (monitors) {
+    snprintf(along, sizeof along, " of {/:Italic %c}", "xyz"[axis]);
+  }
+  snprintf(plot->panels[0].y_label, sizeof plot->panels[0].y_label, "Amplitude%s for %.4g V (nm)",
+           along, ripple_V);
+  snprintf(plot->panels[1].y_label, sizeof plot->panels[1].y_label, "Phase (degrees)");
+  plot->panels[0].key = "top left samplen 2";
+  plot->second_height = 0.7;
   return DEA_OK;
 }
 
@@ -437,7 +406,7 @@ static const struct dea_figure figures[] = {
     DEA_STUDY_FIGURE("bode", study_name, build,
                      "displacement that a small AC excitation of the voltage makes, and its phase"),
     DEA_STUDY_FIGURE(
-        "bode_monitors", study_name, build_monitors,
+        "bode_monitors", study_name, build,
         "displacement of the monitors that a small AC excitation of the voltage makes, "
         "along the axis that they move along most, and its phase"),
 };
@@ -445,7 +414,7 @@ static const struct dea_figure figures[] = {
 // Peaks, for the terminal ------------------------------------------------------------------------
 
 static const struct dea_result_column peak_columns[] = {
-    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "bias"),
+    DEA_KV("voltage_V", "V", "bias"),
     DEA_TEXT_COLUMN("moves", "moves", "centre, fibre tip, or a monitor and its axis"),
     DEA_TEXT_COLUMN("at", "at",
                     "the lowest frequency, a peak, or the highest where it still rises"),
@@ -483,10 +452,7 @@ static const char *peak_word(const struct line *line, size_t i, double most)
 static dea_status add_peaks(struct dea_context *ctx, const struct line *line, const char *moves,
                             struct dea_result_table *table)
 {
-  double most = 0;
-  for (size_t i = 0; i < line->count; i++) {
-    most = fmax(most, value_at(line, line->amplitude, i));
-  }
+  const double most = largest_of(line);
   for (size_t i = 0; i < line->count; i++) {
     const struct dea_load_point *at = line->points;
     const double amplitude_m = value_at(line, line->amplitude, i);
@@ -503,28 +469,20 @@ static dea_status add_peaks(struct dea_context *ctx, const struct line *line, co
   return DEA_OK;
 }
 
-/* All that moves about one bias; `from`: its first point in the curve. */
+/* All that moves about one bias, monitors along the axis of each; `from`: its first point in the
+ * curve. */
 static dea_status add_bias(struct dea_context *ctx, const struct dea_curve *curve, size_t from,
                            struct dea_result_table *table)
 {
-  const struct dea_load_point *points = curve->points + from;
-  const size_t count = count_bias(curve, from);
-  for (int tip = 0; tip < 2; tip++) {
-    const struct line line = disc_line(points, count, tip == 1);
-    if (isfinite(value_at(&line, line.amplitude, 0))) {
-      DEA_TRY(ctx, add_peaks(ctx, &line, tip ? "fibre tip" : "centre", table));
-    }
-  }
-  double largest, most;
+  struct mover m = {.next = 0};
+  double largest;
   common_axis(ctx, curve, &largest);
-  for (int c = 0; c < dea_column_count(ctx); c++) { // along the axis of each
-    const size_t axis = is_monitor(ctx, curve, c) ? main_axis(ctx, points, count, c, &most) : 3;
-    char name[DEA_NAME_SIZE], moves[DEA_NAME_SIZE + 8];
-    if (axis < 3 && most > least_share * largest) {
-      name_of(ctx, c, name);
-      snprintf(moves, sizeof moves, "%.60s, %c", name, "xyz"[axis]);
-      const struct line line = monitor_line(ctx, points, count, c, axis);
-      DEA_TRY(ctx, add_peaks(ctx, &line, moves, table));
+  while (find_mover(ctx, curve, from, 3, &m)) {
+    char moves[DEA_NAME_SIZE + 8];
+    snprintf(moves, sizeof moves, "%.60s%s%.1s", m.name, m.monitor ? ", " : "",
+             m.monitor ? &"xyz"[m.axis] : "");
+    if (!m.monitor || largest_of(&m.line) > least_share * largest) {
+      DEA_TRY(ctx, add_peaks(ctx, &m.line, moves, table));
     }
   }
   return DEA_OK;
@@ -575,5 +533,5 @@ const struct dea_study dea_study_frequency = {
     .run = run,
     .tables = tables,
     .figures = figures,
-    .figure_count = sizeof figures / sizeof figures[0],
+    .figure_count = DEA_COUNT(figures),
 };

@@ -1,30 +1,26 @@
 #include "study/limit_slopes.h"
 
 #include "result/columns.h"
+#include "study/design_gradient.h"
 #include "study/number_rows.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 static const char study_name[] = "sensitivity";
 
 // Tables -----------------------------------------------------------------------------------------
 
 #define LIMIT DEA_TEXT_COLUMN("limit", "limit", "slack, breakdown, pull_in or buckling")
-#define LIMIT_VOLTAGE                                                                              \
-  DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "at", "voltage at which the film comes to it")
+#define LIMIT_VOLTAGE DEA_KV("voltage_V", "at", "voltage at which the film comes to it")
 
 static const struct dea_result_column slope_columns[] = {
     LIMIT,
     LIMIT_VOLTAGE,
     DEA_NUMBER_IN_ROW,
-    DEA_NUMBER_COLUMN("slope", NULL, NULL, 1, "slope",
-                      "of the voltage by the number, V by its unit"),
-    DEA_NUMBER_COLUMN("elasticity", NULL, NULL, 1, "per cent by one per cent",
-                      "d ln(voltage) / d ln(number)"),
+    DEA_BARE("slope", "slope", "of the voltage by the number, V by its unit"),
+    DEA_BARE("elasticity", "per cent by one per cent", "d ln(voltage) / d ln(number)"),
     DEA_NUMBER_TOLERANCE,
     DEA_NUMBER_COLUMN("change_V", "V", "V", 1, "change by tolerance", "of the voltage"),
 };
@@ -37,7 +33,7 @@ static const struct dea_result_column matter_columns[] = {
     LIMIT_VOLTAGE,
     DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
     DEA_TEXT_COLUMN("number_text", "value", "of the number"),
-    DEA_NUMBER_COLUMN("change", NULL, NULL, 1, "changes it by, %", "in per cent by one per cent"),
+    DEA_BARE("change", "changes it by, %", "in per cent by one per cent"),
     DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
     DEA_TEXT_COLUMN("change_text", "changes", "of the voltage by the tolerance"),
 };
@@ -170,9 +166,10 @@ static dea_status find(struct dea_context *ctx, const struct dea_critical_reques
   return status;
 }
 
-dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_model_type *type,
-                                struct dea_result *result)
+dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_study_job *job)
 {
+  const struct dea_model_type *type = job->type;
+  struct dea_result *result = job->result;
   struct dea_model_settings settings = dea_model_settings_of(result->design);
   const double highest_V = dea_design_highest_V(result->design);
   struct found *f = dea_alloc(ctx, 1, sizeof *f);

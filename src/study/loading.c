@@ -12,8 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 static const char study_name[] = "loading";
 
 // Keys -------------------------------------------------------------------------------------------
@@ -78,7 +76,7 @@ static const struct dea_record record = {study_name,
                                          "study of force against displacement of a body, or of "
                                          "pressures, at voltages, or of a charge (3d, devices of "
                                          "the general form)",
-                                         fields, COUNT(fields)};
+                                         fields, DEA_COUNT(fields)};
 
 /* The range that is asked for; RANGES: none. */
 static enum range range_of(const struct settings *settings)
@@ -157,7 +155,7 @@ static dea_status unknown(struct dea_context *ctx, const struct dea_label *label
 {
   const char *known[DEA_DESIGN_STOPS_MAX] = {NULL};
   const size_t all = channel ? layout->channel_count - 1 : layout->body_count; // but for ground
-  const size_t count = all < COUNT(known) ? all : COUNT(known);
+  const size_t count = all < DEA_COUNT(known) ? all : DEA_COUNT(known);
   for (size_t i = 0; i < count; i++) {
     known[i] = channel ? layout->channels[i + 1].name : layout->bodies[i].name;
   }
@@ -220,7 +218,7 @@ bool dea_loading_asked(const struct dea_design *design)
 
 // Tables -----------------------------------------------------------------------------------------
 
-#define VOLTAGE DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the line")
+#define VOLTAGE DEA_KV("voltage_V", "V", "voltage of the line")
 static const char degree[] = "deg";
 static const double degrees = 57.29577951308232;
 
@@ -231,19 +229,16 @@ static const struct dea_result_column point_columns[] = {
     VOLTAGE,
     DEA_RESULT_COLUMN(COUNT, "point", "point", .meaning = "number of the point, from 1"),
     DEA_RESULT_COLUMN(FLAG, "back", "back", .meaning = "on the way back"),
-    DEA_NUMBER_COLUMN("shift_m", "m", "mm", 1e3, "shift", "of the body along the direction"),
+    DEA_MM("shift_m", "shift", "of the body along the direction"),
     DEA_NUMBER_COLUMN("turn_rad", "rad", degree, degrees, "turn", "of the body"),
-    DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force", "of what holds or pushes the body"),
+    DEA_MN("force_N", "force", "of what holds or pushes the body"),
     DEA_NUMBER_COLUMN("moment_N_m", "N m", "uN m", 1e6, "moment", "of what holds the body"),
     DEA_NUMBER_COLUMN("pressure_Pa", "Pa", "kPa", 1e-3, "pressure", "the largest on the device"),
     DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "given of the supply or a channel"),
-    DEA_NUMBER_COLUMN("supply_voltage_V", "V", "kV", 1e-3, "supply", "voltage that this has then"),
-    DEA_NUMBER_COLUMN("highest_z_m", "m", "mm", 1e3, "highest z",
-                      "largest displacement out of the plane"),
-    DEA_NUMBER_COLUMN("lowest_z_m", "m", "mm", 1e3, "lowest z",
-                      "smallest displacement out of the plane"),
-    DEA_NUMBER_COLUMN("energy_J", "J", "uJ", 1e6, "energy",
-                      "potential energy at this voltage, 0 at rest"),
+    DEA_KV("supply_voltage_V", "supply", "voltage that this has then"),
+    DEA_MM("highest_z_m", "highest z", "largest displacement out of the plane"),
+    DEA_MM("lowest_z_m", "lowest z", "smallest displacement out of the plane"),
+    DEA_UJ("energy_J", "energy", "potential energy at this voltage, 0 at rest"),
     DEA_NUMBER_COLUMN("min_tension_N_per_m", "N/m", "N/m", 1, "smallest tension",
                       "below 0 the film is slack"),
     DEA_RESULT_COLUMN(COUNT, "unstable_modes", "unstable modes",
@@ -255,16 +250,15 @@ static const struct dea_result_column point_columns[] = {
 
 static const struct dea_result_column line_columns[] = {
     VOLTAGE,
-    DEA_NUMBER_COLUMN("blocked_force_N", "N", "mN", 1e3, "blocked force",
-                      "that holds the body at shift 0, minus that at 0 V"),
+    DEA_MN("blocked_force_N", "blocked force", "that holds the body at shift 0, minus that at 0 V"),
     DEA_NUMBER_COLUMN("blocked_moment_N_m", "N m", "uN m", 1e6, "blocked moment",
                       "that holds the body at turn 0, minus that at 0 V"),
-    DEA_NUMBER_COLUMN("peak_force_N", "N", "mN", 1e3, "peak force",
-                      "first maximum of the force on the way: a weight above it snaps through"),
-    DEA_NUMBER_COLUMN("peak_shift_m", "m", "mm", 1e3, "at shift", "shift of that maximum"),
-    DEA_NUMBER_COLUMN("least_force_N", "N", "mN", 1e3, "least force",
-                      "first minimum of the force beyond it: a weight below it snaps back"),
-    DEA_NUMBER_COLUMN("least_shift_m", "m", "mm", 1e3, "at shift", "shift of that minimum"),
+    DEA_MN("peak_force_N", "peak force",
+           "first maximum of the force on the way: a weight above it snaps through"),
+    DEA_MM("peak_shift_m", "at shift", "shift of that maximum"),
+    DEA_MN("least_force_N", "least force",
+           "first minimum of the force beyond it: a weight below it snaps back"),
+    DEA_MM("least_shift_m", "at shift", "shift of that minimum"),
     DEA_RESULT_COLUMN(COUNT, "points", "points", .meaning = "of the line"),
     DEA_RESULT_COLUMN(FLAG, "complete", "complete", .meaning = "whether the line came to its end"),
     DEA_TEXT_COLUMN("stopped", "stopped", "why it did not"),
@@ -282,9 +276,7 @@ enum { POINTS, LINES, TABLES };
 // Study ------------------------------------------------------------------------------------------
 
 struct loading {
-  const struct dea_model_type *type;
-  struct dea_model *model; // of the line
-  struct dea_result *result;
+  struct dea_study_job job; // with the model of the line
   const struct settings *settings;
   enum range range;
   struct dea_control control;
@@ -389,8 +381,8 @@ static dea_status move_in_time(struct dea_context *ctx, struct loading *l, doubl
   double now_s = 0;
   bool last = false;
   while (!last) {
-    DEA_TRY(ctx,
-            dea_stepper_step(ctx, &stepper, l->type, l->model, move.time_s, &now_s, &last, at));
+    DEA_TRY(ctx, dea_stepper_step(ctx, &stepper, l->job.type, l->job.model, move.time_s, &now_s,
+                                  &last, at));
     l->step_s = stepper.next_s;
   }
   return DEA_OK;
@@ -406,12 +398,12 @@ static dea_status move_to(struct dea_context *ctx, struct loading *l, double val
   if (l->is_timed) {
     return move_in_time(ctx, l, from, to, at);
   }
-  DEA_TRY(ctx, l->type->move(ctx, l->model, &l->control, to, at));
+  DEA_TRY(ctx, l->job.type->move(ctx, l->job.model, &l->control, to, at));
   if (!isnan(l->settings->duration_s.si)) {
     struct dea_load_point start;
     l->is_timed = true;
     l->step_s = 1e-3 * l->settings->duration_s.si;
-    DEA_TRY(ctx, dea_model_begin(ctx, l->type, l->model, &options, &start));
+    DEA_TRY(ctx, l->job.type->begin(ctx, l->job.model, &options, &start));
   }
   return DEA_OK;
 }
@@ -422,21 +414,22 @@ static dea_status solve_point(struct dea_context *ctx, struct loading *l, double
   struct dea_load_point at;
   struct dea_observation seen;
   double v[VALUES];
-  char what[DEA_NAME_SIZE + 16], flags[DEA_FLAGS_SIZE];
+  char flags[DEA_FLAGS_SIZE];
   if (dea_interrupted_anywhere(ctx)) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu points are kept", l->point);
   }
   DEA_TRY(ctx, move_to(ctx, l, value, &at));
-  DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
+  DEA_TRY(ctx, l->job.type->observe(ctx, l->job.model, &seen));
   check_body(l, &seen, value, v);
-  const struct dea_event *passed = l->type->passed != NULL ? l->type->passed(l->model) : NULL;
+  const struct dea_event *passed =
+      l->job.type->passed != NULL ? l->job.type->passed(l->job.model) : NULL;
   double *limit = back ? &l->least : &l->peak;
   if (passed != NULL && l->range == FORCE && isnan(*limit)) {
     *limit = passed->point.force_N;
   }
   l->point++;
   DEA_TRY(ctx,
-          DEA_TABLE_ADD(ctx, &l->result->tables[l->table[POINTS]], DEA_CELL(l->voltage_V),
+          DEA_TABLE_ADD(ctx, &l->job.result->tables[l->table[POINTS]], DEA_CELL(l->voltage_V),
                         DEA_CELL((double)l->point), DEA_CELL(back), DEA_CELL(v[AT_SHIFT]),
                         DEA_CELL(v[AT_TURN]), DEA_CELL(v[OF_FORCE]), DEA_CELL(v[OF_MOMENT]),
                         DEA_CELL(v[AT_PRESSURE]), DEA_CELL(v[AT_CHARGE]),
@@ -447,11 +440,10 @@ static dea_status solve_point(struct dea_context *ctx, struct loading *l, double
                         DEA_CELL(at.min_tension_N_per_m), DEA_CELL(at.unstable_modes),
                         DEA_CELL(dea_load_point_trusted(&at)),
                         DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(&at), flags))));
-  DEA_TRY(ctx, dea_study_add_point(ctx, l->type, l->model, l->result->device, &at,
-                                   &l->result->curves[l->curve]));
+  DEA_TRY(ctx, dea_study_add_point(ctx, &l->job, l->job.result->device, &at,
+                                   &l->job.result->curves[l->curve]));
   DEA_TRY(ctx, watch(ctx, l, back, v[AT_SHIFT], v[OF_FORCE]));
-  snprintf(what, sizeof what, "%s %s", l->type->name, study_name);
-  dea_progress(ctx, what, ++l->done, l->total);
+  dea_study_progress(ctx, &l->job, study_name, ++l->done, l->total);
   return DEA_OK;
 }
 
@@ -463,11 +455,11 @@ static dea_status block(struct dea_context *ctx, struct loading *l)
   for (int i = 0; i < 2; i++) {
     double v[VALUES];
     if (i == 0) {
-      DEA_TRY(ctx, l->type->move(ctx, l->model, &l->control, 0, &at));
+      DEA_TRY(ctx, l->job.type->move(ctx, l->job.model, &l->control, 0, &at));
     } else {
-      DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
+      DEA_TRY(ctx, l->job.type->solve(ctx, l->job.model, l->voltage_V, &at));
     }
-    DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
+    DEA_TRY(ctx, l->job.type->observe(ctx, l->job.model, &seen));
     check_body(l, &seen, 0, v);
     l->blocked[i] = v[l->range == SHIFT ? OF_FORCE : OF_MOMENT];
   }
@@ -480,14 +472,14 @@ static dea_status begin(struct dea_context *ctx, struct loading *l)
   struct dea_load_point at;
   bool upright = l->control.kind >= DEA_CONTROL_PRESSURE || l->control.component == 2;
   DEA_TRY(ctx, (upright ? dea_model_create : dea_model_create_whole)(
-                   ctx, l->type, l->result->design, l->result->device, &l->model));
+                   ctx, l->job.type, l->job.result->design, l->job.result->device, &l->job.model));
   if (l->control.kind == DEA_CONTROL_PLACE) {
     DEA_TRY(ctx, block(ctx, l));
   } else {
     if (l->range == CHARGE && l->control.body > 0) { // open, before the others have a voltage
-      DEA_TRY(ctx, l->type->move(ctx, l->model, &l->control, 0, &at));
+      DEA_TRY(ctx, l->job.type->move(ctx, l->job.model, &l->control, 0, &at));
     }
-    DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
+    DEA_TRY(ctx, l->job.type->solve(ctx, l->job.model, l->voltage_V, &at));
   }
   return DEA_OK;
 }
@@ -510,28 +502,26 @@ static dea_status follow(struct dea_context *ctx, struct loading *l, double volt
 {
   size_t before = l->point;
   char why[256] = "";
-  l->model = NULL;
+  l->job.model = NULL;
   l->voltage_V = voltage_V;
   l->blocked[0] = l->blocked[1] = NAN;
   l->peak = l->peak_at = l->least = l->least_at = NAN;
   l->count = 0;
   l->is_timed = false;
   dea_status stopped = go(ctx, l);
-  if (l->model != NULL) {
-    l->type->destroy(ctx, l->model);
+  if (l->job.model != NULL) {
+    l->job.type->destroy(ctx, l->job.model);
   }
   if (stopped != DEA_OK) {
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
   }
   double blocked = l->blocked[1] - l->blocked[0];
-  dea_status status = DEA_TABLE_ADD(
-      ctx, &l->result->tables[l->table[LINES]], DEA_CELL(voltage_V),
-      DEA_CELL(l->range == SHIFT ? blocked : NAN), DEA_CELL(l->range == TURN ? blocked : NAN),
-      DEA_CELL(l->peak), DEA_CELL(l->peak_at), DEA_CELL(l->least), DEA_CELL(l->least_at),
-      DEA_CELL((double)(l->point - before)), DEA_CELL(stopped == DEA_OK), DEA_TEXT_CELL(why));
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY(ctx, DEA_TABLE_ADD(ctx, &l->job.result->tables[l->table[LINES]], DEA_CELL(voltage_V),
+                             DEA_CELL(l->range == SHIFT ? blocked : NAN),
+                             DEA_CELL(l->range == TURN ? blocked : NAN), DEA_CELL(l->peak),
+                             DEA_CELL(l->peak_at), DEA_CELL(l->least), DEA_CELL(l->least_at),
+                             DEA_CELL((double)(l->point - before)), DEA_CELL(stopped == DEA_OK),
+                             DEA_TEXT_CELL(why)));
   return stopped == DEA_OK ? DEA_OK
                            : dea_fail(ctx, stopped, "the line at %.4g kV has %zu points: %s",
                                       1e-3 * voltage_V, l->point - before, why);
@@ -544,7 +534,7 @@ static dea_status follow_all(struct dea_context *ctx, struct loading *l, const d
   char why[256] = "";
   for (size_t i = 0; i < count; i++) {
     dea_status status = follow(ctx, l, voltages_V[i]);
-    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+    if (dea_status_ends(status)) {
       return status;
     }
     if (status != DEA_OK && first == DEA_OK) {
@@ -561,7 +551,7 @@ static void choose_control(struct loading *l)
   static const enum dea_control_kind kinds[RANGES] = {DEA_CONTROL_PLACE, DEA_CONTROL_PLACE,
                                                       DEA_CONTROL_FORCE, DEA_CONTROL_PRESSURE,
                                                       DEA_CONTROL_CHARGE};
-  const struct dea_layout *layout = l->result->device->layout;
+  const struct dea_layout *layout = l->job.result->device->layout;
   l->body = l->settings->body.text[0] != '\0' ? dea_layout_find_body(layout, l->settings->body.text)
                                               : DEA_LAYOUT_NONE;
   l->scale = l->range == PRESSURE ? 1 / largest_Pa(layout) : 1;
@@ -571,28 +561,30 @@ static void choose_control(struct loading *l)
                            .component = l->settings->direction.value};
 }
 
-dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_result *result, double voltage_V, struct dea_model **out,
+static struct loading loading_of(const struct dea_study_job *job)
+{
+  const struct settings *settings = settings_of(job->result->design);
+  struct loading l = {.job = *job, .settings = settings, .range = range_of(settings)};
+  choose_control(&l);
+  return l;
+}
+
+dea_status dea_loading_end(struct dea_context *ctx, struct dea_study_job *job, double voltage_V,
                            struct dea_load_point *at, struct dea_loaded *loaded)
 {
-  const struct settings *settings = settings_of(result->design);
-  struct loading l = {.type = type,
-                      .result = result,
-                      .settings = settings,
-                      .range = range_of(settings),
-                      .voltage_V = voltage_V};
-  const size_t steps = (size_t)settings->steps.si;
-  choose_control(&l);
+  struct loading l = loading_of(job);
+  const size_t steps = (size_t)l.settings->steps.si;
+  l.voltage_V = voltage_V;
   dea_status status = begin(ctx, &l);
   for (size_t i = 0; i <= steps && status == DEA_OK; i++) {
     status = move_to(ctx, &l, value_at(&l, i), at);
   }
-  if (status != DEA_OK && l.model != NULL) {
-    type->destroy(ctx, l.model);
-    l.model = NULL;
+  if (status != DEA_OK && l.job.model != NULL) {
+    l.job.type->destroy(ctx, l.job.model);
+    l.job.model = NULL;
   }
   *loaded = (struct dea_loaded){l.control, value_at(&l, steps)};
-  *out = l.model;
+  job->model = l.job.model;
   return status;
 }
 
@@ -601,31 +593,28 @@ static dea_status add_tables(struct dea_context *ctx, struct loading *l)
   struct dea_curve *curve;
   for (int k = 0; k < TABLES; k++) {
     struct dea_result_table *table;
-    DEA_TRY(ctx, dea_result_add_table(ctx, l->result, &tables[k], l->type->name, 0, &table));
-    l->table[k] = (size_t)(table - l->result->tables);
+    DEA_TRY(ctx,
+            dea_result_add_table(ctx, l->job.result, &tables[k], l->job.type->name, 0, &table));
+    l->table[k] = (size_t)(table - l->job.result->tables);
   }
-  DEA_TRY(ctx, dea_result_add_curve(ctx, l->result, l->type->name, study_name, &curve));
-  l->curve = (size_t)(curve - l->result->curves);
+  DEA_TRY(ctx, dea_result_add_curve(ctx, l->job.result, l->job.type->name, study_name, &curve));
+  l->curve = (size_t)(curve - l->job.result->curves);
   return DEA_OK;
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none: each line starts from rest
-  const struct settings *settings = settings_of(result->design);
-  struct loading l = {
-      .type = type, .result = result, .settings = settings, .range = range_of(settings)};
+  struct loading l = loading_of(job);
+  const struct settings *settings = l.settings;
   double voltages_V[DEA_DESIGN_STOPS_MAX] = {0};
   size_t count = l.range == CHARGE && settings->channel.text[0] == '\0'
                      ? 1
-                     : dea_study_stops(result->design, settings->voltages_V,
+                     : dea_study_stops(job->result->design, settings->voltages_V,
                                        settings->voltage_count, true, voltages_V);
-  choose_control(&l);
   l.total = count * ((size_t)settings->steps.si * (settings->back.value == 1 ? 2 : 1) + 1);
   DEA_TRY(ctx, add_tables(ctx, &l));
   dea_status status = follow_all(ctx, &l, voltages_V, count);
-  return dea_curve_end(ctx, &result->curves[l.curve], status);
+  return dea_curve_end(ctx, &job->result->curves[l.curve], status);
 }
 
 // Figure -----------------------------------------------------------------------------------------
@@ -690,7 +679,7 @@ static size_t part_end(const struct dea_result_table *table, size_t first)
   size_t end = first;
   bool goes_on = true;
   while (end < table->row_count && goes_on) {
-    for (size_t k = 0; k < COUNT(same); k++) {
+    for (size_t k = 0; k < DEA_COUNT(same); k++) {
       goes_on = goes_on && dea_result_table_number(table, end, same[k], 0) ==
                                dea_result_table_number(table, first, same[k], 0);
     }
@@ -706,21 +695,25 @@ static bool is_sound(const struct dea_result_table *table, size_t row)
           ~(1u << DEA_FLAG_PREVIEW)) == 0;
 }
 
-/* The rows that are not sound, and the next ones, so that no gap is left. */
-static dea_status add_unsound(struct dea_context *ctx, struct dea_panel *panel,
-                              const struct dea_result_table *table, const struct axes *axes,
-                              size_t first, size_t count)
+/* Rows from `first` on into a series: those that are sound, or the others and the next ones to
+ * them, so that no gap is left. Returns whether all are sound. */
+static bool fill_line(const struct dea_result_table *table, const struct axes *axes, size_t first,
+                      bool sound, struct dea_series *series)
 {
-  struct dea_series *series;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_DASHED, DEA_GREY, "", &series));
+  const size_t count = series->count;
+  bool all = true;
   for (size_t i = 0; i < count; i++) {
-    bool shown = !is_sound(table, first + i) || (i > 0 && !is_sound(table, first + i - 1)) ||
-                 (i + 1 < count && !is_sound(table, first + i + 1));
-    series->values[i] = axes->x_factor * dea_result_table_number(table, first + i, axes->x, 0);
+    const size_t row = first + i;
+    const bool here = is_sound(table, row);
+    const bool shown = sound ? here
+                             : !here || (i > 0 && !is_sound(table, row - 1)) ||
+                                   (i + 1 < count && !is_sound(table, row + 1));
+    series->values[i] = axes->x_factor * dea_result_table_number(table, row, axes->x, 0);
     series->values[count + i] =
-        shown ? axes->y_factor * dea_result_table_number(table, first + i, axes->y, 0) : NAN;
+        shown ? axes->y_factor * dea_result_table_number(table, row, axes->y, 0) : NAN;
+    all = all && here;
   }
-  return DEA_OK;
+  return all;
 }
 
 /* Rows [first, end) as the number-th line; one back joins the turning point to its rows. Stretches
@@ -742,15 +735,11 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
     snprintf(series->title, sizeof series->title, "%.4g kV",
              1e-3 * dea_result_table_number(table, first, "voltage_V", 0));
   }
-  bool all_sound = true;
-  for (size_t i = 0; i < count; i++) {
-    bool sound = is_sound(table, first + i);
-    series->values[i] = axes->x_factor * dea_result_table_number(table, first + i, axes->x, 0);
-    series->values[count + i] =
-        sound ? axes->y_factor * dea_result_table_number(table, first + i, axes->y, 0) : NAN;
-    all_sound = all_sound && sound;
+  if (!fill_line(table, axes, first, true, series)) {
+    DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_DASHED, DEA_GREY, "", &series));
+    fill_line(table, axes, first, false, series);
   }
-  return all_sound ? DEA_OK : add_unsound(ctx, panel, table, axes, first, count);
+  return DEA_OK;
 }
 
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
@@ -802,5 +791,5 @@ const struct dea_study dea_study_loading = {
     .able_by = offsetof(struct dea_model_type, move),
     .run = run,
     .figures = figures,
-    .figure_count = COUNT(figures),
+    .figure_count = DEA_COUNT(figures),
 };

@@ -11,8 +11,7 @@ struct dea_loaded {
 
 /* Whether a design asks for it. */
 bool dea_loading_asked(const struct dea_design *design);
-/* A model at the end of the line at a voltage, the caller's, and where it is. On failure there is
- * none. */
-dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_result *result, double voltage_V, struct dea_model **out,
+/* Gives the job a model at the end of the line at a voltage, the caller's to destroy, and where it
+ * is. On failure there is none. */
+dea_status dea_loading_end(struct dea_context *ctx, struct dea_study_job *job, double voltage_V,
                            struct dea_load_point *at, struct dea_loaded *loaded);

@@ -2,7 +2,6 @@
 #include "study/modal.h"
 #include "base/schema.h"
 #include "study/observe.h"
-#include "study/study.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -33,7 +32,7 @@ static const struct dea_record record = {
     study_name,
     "study of vibrations, made when this section is there ({}) or with --study: frequencies and "
     "shapes about voltages (3d)",
-    fields, sizeof fields / sizeof fields[0]};
+    fields, DEA_COUNT(fields)};
 
 static const struct dea_design_section section = {
     .key = study_name, .record = &record, .size = sizeof(struct settings)};
@@ -47,45 +46,43 @@ bool dea_modal_asked(const struct dea_design *design)
 // Study ------------------------------------------------------------------------------------------
 
 /* The modes at one voltage. */
-static dea_status solve_modes(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, const struct dea_load_point *at, size_t stop,
-                              struct dea_result *result, struct dea_curve *curve)
+static dea_status solve_modes(struct dea_context *ctx, const struct dea_study_job *job,
+                              const struct dea_load_point *at, size_t stop, struct dea_curve *curve)
 {
-  const struct settings *settings = dea_design_settings(result->design, &section)->values;
+  const struct dea_model_type *type = job->type;
+  const struct settings *settings = dea_design_settings(job->result->design, &section)->values;
   size_t count = (size_t)settings->count.si;
   struct dea_load_point points[DEA_DESIGN_MODES_MAX];
   struct dea_field_mesh *shapes;
   char name[DEA_NAME_SIZE];
-  DEA_TRY(ctx, dea_model_modes(ctx, type, model, at, count, points, &shapes));
+  DEA_TRY(ctx, type->modes(ctx, job->model, at, count, points, &shapes));
   snprintf(name, sizeof name, "%.50s" DEA_SHAPES_SUFFIX, type->name);
-  DEA_TRY(ctx, dea_result_add_surface(ctx, result, name, stop, at->voltage_V, shapes));
+  DEA_TRY(ctx, dea_result_add_surface(ctx, job->result, name, stop, at->voltage_V, shapes));
   struct dea_monitor_set set;
-  dea_status status = dea_monitor_set_init(ctx, type, result->device, &set);
+  dea_status status = dea_monitor_set_init(ctx, type, job->result->device, &set);
   for (size_t k = 0; k < count && status == DEA_OK; k++) {
-    status = dea_monitor_set_read(ctx, &set, type, model, false, &points[k]);
+    status = dea_monitor_set_read(ctx, &set, type, job->model, false, &points[k]);
     status = status == DEA_OK ? dea_curve_add_point(ctx, curve, &points[k]) : status;
   }
   dea_monitor_set_free(&set);
   return status;
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none
-  const struct dea_design *design = result->design;
+  const struct dea_design *design = job->result->design;
   const struct settings *settings = dea_design_settings(design, &section)->values;
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, true, voltages_V);
-  return DEA_CHAIN(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, voltages_V,
-                                               count, solve_modes));
+  return DEA_CHAIN(
+      ctx, dea_study_stop_by_stop(ctx, job, study_name, true, voltages_V, count, solve_modes));
 }
 
 // Table ------------------------------------------------------------------------------------------
 
 static const struct dea_result_column mode_columns[] = {
-    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage that it vibrates about"),
+    DEA_KV("voltage_V", "V", "voltage that it vibrates about"),
     DEA_RESULT_COLUMN(COUNT, "mode", "mode", .meaning = "from the lowest on"),
     DEA_NUMBER_COLUMN("frequency_Hz", "Hz", "Hz", 1, "frequency", "in vacuo; negative: unstable"),
     DEA_NUMBER_COLUMN("mode_out_of_plane", "1", "%", 100, "out of plane",
@@ -188,5 +185,5 @@ const struct dea_study dea_study_modal = {
     .run = run,
     .tables = tables,
     .figures = figures,
-    .figure_count = sizeof figures / sizeof figures[0],
+    .figure_count = DEA_COUNT(figures),
 };

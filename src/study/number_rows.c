@@ -4,8 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 void dea_number_text(double value, const char *unit, char *out, size_t size)
 {
   static const struct {
@@ -18,7 +16,7 @@ void dea_number_text(double value, const char *unit, char *out, size_t size)
                 {"Pa", " kPa", 1e3, 1e-3},
                 {"V", " kV", 1e3, 1e-3},
                 {"1", "", 0, 1}};
-  for (size_t i = 0; i < COUNT(scales); i++) {
+  for (size_t i = 0; i < DEA_COUNT(scales); i++) {
     if (strcmp(unit, scales[i].unit) == 0 && fabs(value) >= scales[i].least) {
       snprintf(out, size, "%.5g%s", scales[i].factor * value, scales[i].shown);
       return;

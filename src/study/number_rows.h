@@ -1,13 +1,13 @@
 /* What tables about the numbers of a design share: columns, texts, and the order of their rows. */
 #pragma once
 
-#include "result/table.h"
 #include "study/numbers.h"
+#include "study/study.h"
 
 /* Columns of a number: its key, its value and its unit. */
 #define DEA_NUMBER_IN_ROW                                                                          \
   DEA_TEXT_COLUMN("number", "number", "of the design"),                                            \
-      DEA_NUMBER_COLUMN("number_value", NULL, NULL, 1, "value", "of the number, in its unit"),     \
+      DEA_BARE("number_value", "value", "of the number, in its unit"),                             \
       DEA_TEXT_COLUMN("number_unit", "unit", "of the number")
 #define DEA_NUMBER_TOLERANCE                                                                       \
   {                                                                                                \

@@ -16,8 +16,8 @@ static const struct dea_result_column pass_columns[] = {
 };
 static const struct dea_result_column source_columns[] = {
     DEA_TEXT_COLUMN("channel", "channel", "name in the design"),
-    DEA_NUMBER_COLUMN("lowest_V", "V", "kV", 1e-3, "lowest", "voltage of the channel"),
-    DEA_NUMBER_COLUMN("highest_V", "V", "kV", 1e-3, "highest", "voltage of the channel"),
+    DEA_KV("lowest_V", "lowest", "voltage of the channel"),
+    DEA_KV("highest_V", "highest", "voltage of the channel"),
     DEA_NUMBER_COLUMN("largest_charge_C", "C", "nC", 1e9, "charge", "largest size of its charge"),
     DEA_NUMBER_COLUMN("largest_current_A", "A", "uA", 1e6, "current",
                       "largest size of its source's current, jumps aside"),
@@ -32,6 +32,17 @@ static const struct dea_result_table_type of_sources =
 
 // What is observed at a point --------------------------------------------------------------------
 
+struct dea_monitor_values *dea_monitor_column_values(struct dea_arena *memory,
+                                                     const struct dea_monitor_column *columns,
+                                                     size_t count)
+{
+  int *numbers = dea_arena_alloc(memory, count, sizeof *numbers);
+  for (size_t i = 0; numbers != NULL && i < count; i++) {
+    numbers[i] = columns[i].column;
+  }
+  return dea_monitor_values_create(memory, numbers, count);
+}
+
 dea_status dea_monitor_set_init(struct dea_context *ctx, const struct dea_model_type *type,
                                 const struct dea_device *device, struct dea_monitor_set *out)
 {
@@ -41,13 +52,9 @@ dea_status dea_monitor_set_init(struct dea_context *ctx, const struct dea_model_
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_layout_columns(&out->memory, device->layout, &columns, &out->count));
-  int *numbers = dea_arena_alloc(&out->memory, out->count, sizeof *numbers);
-  for (size_t i = 0; numbers != NULL && i < out->count; i++) {
-    numbers[i] = columns[i].column;
-  }
   out->columns = columns;
   out->errors = dea_arena_alloc(&out->memory, device->layout->monitor_count, sizeof *out->errors);
-  out->values = dea_monitor_values_create(&out->memory, numbers, out->count);
+  out->values = dea_monitor_column_values(&out->memory, columns, out->count);
   return dea_arena_status(&out->memory);
 }
 
@@ -75,7 +82,7 @@ dea_status dea_monitor_set_read(struct dea_context *ctx, struct dea_monitor_set 
   if (set->count == 0) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
+  DEA_TRY(ctx, type->observe(ctx, model, &seen));
   DEA_TRY(ctx, errors && type->errors != NULL ? type->errors(ctx, model, set->errors) : DEA_OK);
   point->monitors = set->values;
   for (size_t i = 0; i < set->count; i++) {
@@ -107,24 +114,27 @@ dea_status dea_monitor_set_read(struct dea_context *ctx, struct dea_monitor_set 
   return DEA_OK;
 }
 
-dea_status dea_study_add_point(struct dea_context *ctx, const struct dea_model_type *type,
-                               struct dea_model *model, const struct dea_device *device,
-                               const struct dea_load_point *point, struct dea_curve *curve)
+dea_status dea_study_add_point(struct dea_context *ctx, const struct dea_study_job *job,
+                               const struct dea_device *device, const struct dea_load_point *point,
+                               struct dea_curve *curve)
 {
   struct dea_load_point with = *point;
   struct dea_monitor_set set;
-  dea_status status = dea_monitor_set_init(ctx, type, device, &set);
-  status = status == DEA_OK ? dea_monitor_set_read(ctx, &set, type, model, true, &with) : status;
+  dea_status status = dea_monitor_set_init(ctx, job->type, device, &set);
+  status = status == DEA_OK ? dea_monitor_set_read(ctx, &set, job->type, job->model, true, &with)
+                            : status;
   status = status == DEA_OK ? dea_curve_add_point(ctx, curve, &with) : status;
   dea_monitor_set_free(&set);
   return status;
 }
 
-dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_model_type *type,
-                                    const struct dea_model *model, struct dea_result *result)
+dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_study_job *job)
 {
+  const struct dea_model_type *type = job->type;
+  struct dea_result *result = job->result;
   size_t count = 0;
-  const struct dea_adapt_pass *pass = type->passes != NULL ? type->passes(model, &count) : NULL;
+  const struct dea_adapt_pass *pass =
+      type->passes != NULL ? type->passes(job->model, &count) : NULL;
   if (count == 0 || dea_result_find_table(result, type->name, "sweep", of_passes.name) != NULL) {
     return DEA_OK;
   }

@@ -5,6 +5,7 @@
 #include "result/columns.h"
 #include "result/figure.h"
 #include "result/result.h"
+#include "study/study.h"
 
 /* The columns of a device and their values at one point; freed with dea_monitor_set_free. */
 struct dea_monitor_set {
@@ -15,6 +16,10 @@ struct dea_monitor_set {
   struct dea_monitor_values *values;
 };
 
+/* Numbers of NAN for columns of monitors [count]; NULL on failure. */
+struct dea_monitor_values *dea_monitor_column_values(struct dea_arena *memory,
+                                                     const struct dea_monitor_column *columns,
+                                                     size_t count);
 dea_status dea_monitor_set_init(struct dea_context *ctx, const struct dea_model_type *type,
                                 const struct dea_device *device, struct dea_monitor_set *out);
 /* Those at the last point solved, or of a history at the last step, into the point, which borrows
@@ -25,12 +30,11 @@ dea_status dea_monitor_set_read(struct dea_context *ctx, struct dea_monitor_set 
 void dea_monitor_set_free(struct dea_monitor_set *set);
 
 /* Adds the last point solved to a curve, with what monitors and channels of the device show. */
-dea_status dea_study_add_point(struct dea_context *ctx, const struct dea_model_type *type,
-                               struct dea_model *model, const struct dea_device *device,
-                               const struct dea_load_point *point, struct dea_curve *curve);
+dea_status dea_study_add_point(struct dea_context *ctx, const struct dea_study_job *job,
+                               const struct dea_device *device, const struct dea_load_point *point,
+                               struct dea_curve *curve);
 /* The meshes of an adaptive refinement as the model's table "adaptation", once; nothing without. */
-dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_model_type *type,
-                                    const struct dea_model *model, struct dea_result *result);
+dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_study_job *job);
 /* Extremes of what the channels of a history saw, as its model's table "sources". */
 dea_status dea_study_sources(struct dea_context *ctx, const struct dea_monitor_set *set,
                              const struct dea_curve *curve, struct dea_result *result);

@@ -19,8 +19,6 @@ enum { AXES_MAX = 4 };
 
 static const char study_name[] = "operating-map";
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 // Keys -------------------------------------------------------------------------------------------
 
 struct axis_keys {
@@ -62,7 +60,7 @@ static const struct dea_record record = {
     "study of the voltages at which the actuator works against numbers of the design, made when "
     "this section is there ({}) or with --study: of model 3d by sweeps, where this section is "
     "there",
-    fields, COUNT(fields)};
+    fields, DEA_COUNT(fields)};
 static const struct dea_design_section section = {
     .key = "operating_map", .record = &record, .size = sizeof(struct settings)};
 
@@ -148,7 +146,7 @@ static dea_status add_given(struct dea_context *ctx, const struct numbers *numbe
 static void add_usual(const struct dea_device *device, const struct numbers *numbers,
                       struct plan *plan)
 {
-  for (size_t i = 0; i < COUNT(usual); i++) {
+  for (size_t i = 0; i < DEA_COUNT(usual); i++) {
     const struct dea_design_number *number = find_number(numbers, usual[i].key);
     if (number != NULL) {
       plan->axes[plan->count++] =
@@ -211,14 +209,11 @@ static dea_status refuse(struct dea_context *ctx, const struct dea_design *desig
 
 // Tables -----------------------------------------------------------------------------------------
 
-#define VOLTAGE(its_key, its_title, its_meaning)                                                   \
-  DEA_NUMBER_COLUMN(its_key, "V", "kV", 1e-3, its_title, its_meaning)
-
 static const struct dea_result_column scale_columns[] = {
-    VOLTAGE("highest_voltage_V", "highest voltage", "of the design or the run's curves"),
-    VOLTAGE("end_voltage_V", "end", "voltage at which the paths of the map end"),
-    DEA_NUMBER_COLUMN("displacement_step_m", "m", "um", 1e6, "step of displacement",
-                      "of the fibre tips, from one level to the next"),
+    DEA_KV("highest_voltage_V", "highest voltage", "of the design or the run's curves"),
+    DEA_KV("end_voltage_V", "end", "voltage at which the paths of the map end"),
+    DEA_UM("displacement_step_m", "step of displacement",
+           "of the fibre tips, from one level to the next"),
     DEA_NUMBER_COLUMN("strain_step", NULL, "%", 100, "step of strain",
                       "of the electrode's radius, from one level to the next; without fibres"),
     DEA_TEXT_COLUMN("displacements", "displacements",
@@ -232,9 +227,9 @@ static const struct dea_result_column scale_columns[] = {
 };
 static const struct dea_result_column limit_columns[] = {
     {0}, // of the number
-    VOLTAGE("slack_V", "slack above", "voltage at which the film loses its tension"),
-    VOLTAGE("breakdown_V", "breakdown above", "voltage of breakdown"),
-    VOLTAGE("pull_in_V", "pull-in", "voltage of pull-in"),
+    DEA_KV("slack_V", "slack above", "voltage at which the film loses its tension"),
+    DEA_KV("breakdown_V", "breakdown above", "voltage of breakdown"),
+    DEA_KV("pull_in_V", "pull-in", "voltage of pull-in"),
     DEA_RESULT_COLUMN(NUMBER, "level_V", "level", .si_unit = "V", .display_unit = "kV",
                       .factor = 1e-3, .list = true, .hidden = DEA_IN_SCREEN,
                       .meaning = "voltages at which the levels are reached")};
@@ -265,7 +260,7 @@ static dea_status fill_column(struct dea_context *ctx, const struct axis *axis, 
       dea_intern(ctx, key), number->unit, number->unit, 1,
       axis->title != NULL ? axis->title : dea_intern(ctx, number->key),
       own ? "of the design itself" : "number of the design");
-  for (size_t i = COUNT(units); i > 0; i--) {
+  for (size_t i = DEA_COUNT(units); i > 0; i--) {
     if (strcmp(units[i - 1].si, number->unit) == 0 && fabs(number->value) < units[i - 1].below) {
       out->display_unit = units[i - 1].shown;
       out->factor = units[i - 1].factor;
@@ -283,8 +278,7 @@ struct limits {
 };
 
 struct map {
-  const struct dea_model_type *type;
-  const struct dea_result *result;
+  const struct dea_study_job *job;
   struct plan plan;
   double highest_V, end_V;
   bool lift, strain; // levels of the fibre tip's displacement [m], or of the strain, as ever
@@ -349,20 +343,21 @@ static double passes(double found, const struct dea_load_point *from, double a,
 static dea_status sweep(struct dea_context *ctx, const struct dea_device *device,
                         struct dea_model *model, struct map *map)
 {
-  const struct dea_design *design = map->result->design;
+  const struct dea_model_type *type = map->job->type;
+  const struct dea_design *design = map->job->result->design;
   struct dea_monitor_set set;
-  dea_status status = dea_monitor_set_init(ctx, map->type, device, &set);
+  dea_status status = dea_monitor_set_init(ctx, type, device, &set);
   for (size_t i = 0; i < design->compute.voltage_count && status == DEA_OK; i++) {
     const struct dea_load_point before = map->before;
     struct dea_load_point point;
-    status = map->type->solve(ctx, model, design->compute.voltages_V[i], &point);
+    status = type->solve(ctx, model, design->compute.voltages_V[i], &point);
     const struct dea_event *limit =
-        status != DEA_OK && map->type->limit != NULL ? map->type->limit(model) : NULL;
+        status != DEA_OK && type->limit != NULL ? type->limit(model) : NULL;
     if (limit != NULL) {
       store_event(map, limit);
     }
-    status = status == DEA_OK ? dea_monitor_set_read(ctx, &set, map->type, model, false, &point)
-                              : status;
+    status =
+        status == DEA_OK ? dea_monitor_set_read(ctx, &set, type, model, false, &point) : status;
     if (status == DEA_OK) {
       map->now.slack_V = passes(map->now.slack_V, &before, before.min_tension_N_per_m, &point,
                                 point.min_tension_N_per_m);
@@ -382,13 +377,14 @@ static dea_status follow(struct dea_context *ctx, const struct dea_device *devic
                                            .max_voltage_V = map->end_V,
                                            .max_points = PATH_POINTS};
   struct dea_model *model;
-  DEA_TRY(ctx, dea_model_create(ctx, map->type, map->result->design, device, &model));
+  DEA_TRY(ctx, dea_model_create(ctx, map->job->type, map->job->result->design, device, &model));
   map->before = dea_load_point_empty();
   map->value_before = NAN;
-  dea_status status = map->type->path != NULL ? dea_model_path(ctx, map->type, model, &options,
-                                                               store_point, store_event, map)
-                                              : sweep(ctx, device, model, map);
-  map->type->destroy(ctx, model);
+  dea_status status =
+      map->job->type->path != NULL
+          ? dea_model_path(ctx, map->job->type, model, &options, store_point, store_event, map)
+          : sweep(ctx, device, model, map);
+  map->job->type->destroy(ctx, model);
   return status;
 }
 
@@ -400,18 +396,14 @@ static dea_status find_limits(struct dea_context *ctx, const struct dea_design_n
   struct dea_changed_device changed;
   map->now = (struct limits){NAN, NAN, NAN, {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN}};
   size_t errors = dea_finding_trial_begin(ctx);
-  dea_status status =
-      dea_device_change(ctx, map->result->design, map->result->device, number, value, &changed);
+  dea_status status = dea_device_change(ctx, map->job->result->design, map->job->result->device,
+                                        number, value, &changed);
   if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) == errors) {
     status = follow(ctx, &changed.device, map);
   }
   dea_changed_device_free(&changed);
   dea_finding_trial_end(ctx, errors);
-  if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
-    return status;
-  }
-  dea_context_clear(ctx);
-  return DEA_OK;
+  return dea_forgive(ctx, status);
 }
 
 /* Without a quantity: of a disc fibre tips or strain, else the motion that a monitor shows most. */
@@ -423,7 +415,7 @@ static void choose_column(const struct dea_context *ctx, const struct dea_curve 
   if (map->plan.column >= 0) {
     return;
   }
-  map->lift = map->result->device->fibre_count > 0;
+  map->lift = map->job->result->device->fibre_count > 0;
   map->strain = !map->lift && dea_points_have(curve->points, curve->count, strain);
   if (map->lift || map->strain) {
     column = map->lift ? dea_point_column_find("fibre_tip_z_m") : strain;
@@ -443,7 +435,7 @@ static void choose_step(const struct dea_curve *curve, struct map *map)
                size = fabs(reached);
   map->step = NAN;
   double power = pow(10, floor(log10(size / 5)));
-  for (size_t i = 0; i < COUNT(nice) && size > 0 && isnan(map->step); i++) {
+  for (size_t i = 0; i < DEA_COUNT(nice) && size > 0 && isnan(map->step); i++) {
     map->step = nice[i] * power >= 0.999 * size / 5 ? nice[i] * power : NAN;
   }
   map->step = (map->lift || map->strain) && reached < 0 ? NAN : copysign(map->step, reached);
@@ -453,18 +445,18 @@ static void choose_step(const struct dea_curve *curve, struct map *map)
 /* The design itself, at rest and at the highest voltage that it reaches. */
 static dea_status solve_cells(struct dea_context *ctx, struct map *map)
 {
-  const struct dea_device *device = map->result->device;
+  const struct dea_device *device = map->job->result->device;
+  struct dea_study_job own = *map->job;
   struct dea_curve curve = {0};
-  struct dea_model *model;
-  DEA_TRY(ctx, dea_model_create(ctx, map->type, map->result->design, device, &model));
+  DEA_TRY(ctx, dea_model_create(ctx, own.type, own.result->design, device, &own.model));
   const size_t errors = dea_finding_trial_begin(ctx);
-  dea_status status = dea_study_add_points(ctx, map->type, model, device, (double[]){0}, 1, &curve);
+  dea_status status = dea_study_add_points(ctx, &own, device, (double[]){0}, 1, &curve);
   for (double share = 1; share > 0.1 && curve.count == 1; share -= 0.1) {
     const double V = share * map->highest_V;
-    status = dea_study_add_points(ctx, map->type, model, device, &V, 1, &curve);
+    status = dea_study_add_points(ctx, &own, device, &V, 1, &curve);
   }
   dea_finding_trial_end(ctx, errors);
-  map->type->destroy(ctx, model);
+  own.type->destroy(ctx, own.model);
   if (status != DEA_E_MEMORY && curve.count > 0) {
     choose_column(ctx, &curve, map);
     choose_step(&curve, map);
@@ -472,17 +464,13 @@ static dea_status solve_cells(struct dea_context *ctx, struct map *map)
   }
   dea_free(ctx, curve.points);
   dea_arena_free(&curve.memory);
-  if (status == DEA_E_MEMORY) {
-    return status;
-  }
-  dea_context_clear(ctx);
-  return DEA_OK;
+  return dea_forgive(ctx, status);
 }
 
 static dea_status add_axis(struct dea_context *ctx, const struct axis *axis, size_t rows,
-                           struct map *map, struct dea_result *result)
+                           struct map *map)
 {
-  struct dea_result_column columns[COUNT(limit_columns)];
+  struct dea_result_column columns[DEA_COUNT(limit_columns)];
   struct dea_result_table *table;
   char title[2 * DEA_NUMBER_KEY_SIZE];
   memcpy(columns, limit_columns, sizeof columns);
@@ -492,7 +480,8 @@ static dea_status add_axis(struct dea_context *ctx, const struct axis *axis, siz
       DEA_RESULT_TABLE(study_name, name_axis(ctx, axis), columns, .title = dea_intern(ctx, title),
                        .where = IN_ALL, .every = rows > 9 ? 4 : 0); // the report draws it
   DEA_TRY_MEMORY(type.name != NULL && type.title != NULL);
-  DEA_TRY(ctx, dea_result_add_table(ctx, result, &type, map->type->name, LEVELS, &table));
+  DEA_TRY(ctx,
+          dea_result_add_table(ctx, map->job->result, &type, map->job->type->name, LEVELS, &table));
   for (size_t i = 0; i < rows; i++) {
     double value = axis->low + (axis->high - axis->low) * (double)i / (double)(rows - 1);
     if (dea_interrupted_anywhere(ctx)) {
@@ -507,10 +496,9 @@ static dea_status add_axis(struct dea_context *ctx, const struct axis *axis, siz
   return DEA_OK;
 }
 
-static dea_status add_scale(struct dea_context *ctx, const struct map *map,
-                            struct dea_result *result)
+static dea_status add_scale(struct dea_context *ctx, const struct map *map)
 {
-  enum { OWN = COUNT(scale_columns) };
+  enum { OWN = DEA_COUNT(scale_columns) };
   struct dea_result_column columns[OWN + AXES_MAX];
   struct dea_result_table_value row[OWN + AXES_MAX] = {{.number = map->highest_V},
                                                        {.number = map->end_V},
@@ -533,22 +521,20 @@ static dea_status add_scale(struct dea_context *ctx, const struct map *map,
                                              .one_row = true,
                                              .columns = columns,
                                              .column_count = OWN + map->plan.count};
-  DEA_TRY(ctx, dea_result_add_table(ctx, result, &type, map->type->name, 0, &scale));
+  DEA_TRY(ctx, dea_result_add_table(ctx, map->job->result, &type, map->job->type->name, 0, &scale));
   return DEA_CHAIN(ctx, dea_result_table_add_row(ctx, scale, row));
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none: each design has its own
+  const struct dea_result *result = job->result;
   const struct settings *settings = dea_design_settings(result->design, &section)->values;
   const bool given = settings->rows.origin != DEA_ABSENT && settings->rows.si >= 2;
-  const size_t rows = given ? (size_t)settings->rows.si : type->path != NULL ? ROWS : SWEPT_ROWS;
+  const bool has_path = job->type->path != NULL;
+  const size_t rows = given ? (size_t)settings->rows.si : has_path ? ROWS : SWEPT_ROWS;
   double highest_V = dea_study_highest_V(result);
-  struct map map = {.type = type,
-                    .result = result,
-                    .highest_V = highest_V,
-                    .end_V = type->path != NULL ? 1.5 * highest_V : highest_V};
+  struct map map = {
+      .job = job, .highest_V = highest_V, .end_V = has_path ? 1.5 * highest_V : highest_V};
   if (!(highest_V > 0)) {
     return DEA_OK;
   }
@@ -557,9 +543,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   if (map.plan.column < 0) { // it has no point
     return DEA_OK;
   }
-  DEA_TRY(ctx, add_scale(ctx, &map, result));
+  DEA_TRY(ctx, add_scale(ctx, &map));
   for (size_t i = 0; i < map.plan.count; i++) {
-    DEA_TRY(ctx, add_axis(ctx, &map.plan.axes[i], rows, &map, result));
+    DEA_TRY(ctx, add_axis(ctx, &map.plan.axes[i], rows, &map));
   }
   return DEA_OK;
 }
@@ -653,7 +639,7 @@ static dea_status add_levels(struct dea_context *ctx, struct dea_panel *panel,
 /* Label of the axis of a table with a figure of its own; NULL: of another one. */
 static const char *label_of(const struct dea_result_table *table)
 {
-  for (size_t k = 0; k < COUNT(labelled); k++) {
+  for (size_t k = 0; k < DEA_COUNT(labelled); k++) {
     if (strcmp(labelled[k].table, table->type.name) == 0) {
       return labelled[k].label;
     }
@@ -781,4 +767,4 @@ const struct dea_study dea_study_operating_map = {.name = study_name,
                                                   .refuse = refuse,
                                                   .run = run,
                                                   .figures = figures,
-                                                  .figure_count = COUNT(figures)};
+                                                  .figure_count = DEA_COUNT(figures)};

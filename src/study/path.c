@@ -6,8 +6,7 @@
 
 struct target {
   struct dea_context *ctx;
-  const struct dea_model_type *type;
-  struct dea_model *model; // stands at each point that it hands out
+  const struct dea_study_job *job; // whose model stands at each point that it hands out
   struct dea_monitor_set set;
   struct dea_curve *curve;
 };
@@ -16,8 +15,8 @@ static dea_status store_point(void *user, const struct dea_load_point *point)
 {
   struct target *target = user;
   struct dea_load_point with = *point;
-  DEA_TRY(target->ctx, dea_monitor_set_read(target->ctx, &target->set, target->type, target->model,
-                                            false, &with));
+  DEA_TRY(target->ctx, dea_monitor_set_read(target->ctx, &target->set, target->job->type,
+                                            target->job->model, false, &with));
   return dea_curve_add_point(target->ctx, target->curve, &with);
 }
 
@@ -25,23 +24,6 @@ static dea_status store_event(void *user, const struct dea_event *event)
 {
   struct target *target = user;
   return dea_curve_add_event(target->ctx, target->curve, event);
-}
-
-/* Distance to the next limit point of each point's own branch: points come in path order, and
- * events carry the stretch at which they stand. */
-static void fill_distances(struct dea_curve *curve)
-{
-  for (size_t i = 0; i < curve->count; i++) {
-    struct dea_load_point *point = &curve->points[i];
-    for (size_t k = 0; k < curve->event_count && point->stable; k++) {
-      const struct dea_event *event = &curve->events[k];
-      if (event->kind == DEA_EVENT_PULL_IN &&
-          event->point.electrode_stretch >= point->electrode_stretch) {
-        point->pull_in_distance_V = event->point.voltage_V - point->voltage_V;
-        break;
-      }
-    }
-  }
 }
 
 /* Total stretch at which the path ends: the design's, or else by default far enough to hold the
@@ -79,10 +61,11 @@ static struct dea_path_options long_options(const struct dea_design *design)
   };
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  struct target target = {.ctx = ctx, .type = type, .model = model};
+  const struct dea_model_type *type = job->type;
+  struct dea_result *result = job->result;
+  struct target target = {.ctx = ctx, .job = job};
   bool is_long = type->path == NULL && type->long_path != NULL;
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "path", &target.curve));
   struct dea_path_options options = {.max_voltage_V = INFINITY, .max_points = DEA_PATH_POINTS_MAX};
@@ -93,11 +76,16 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   }
   dea_status status = dea_monitor_set_init(ctx, type, result->device, &target.set);
   if (status == DEA_OK) {
-    status = dea_model_path(ctx, type, model, &options, store_point, store_event, &target);
+    status = dea_model_path(ctx, type, job->model, &options, store_point, store_event, &target);
   }
   dea_monitor_set_free(&target.set);
   DEA_TRY(ctx, dea_curve_end(ctx, target.curve, status));
-  fill_distances(target.curve);
+  for (size_t i = 0; i < target.curve->count; i++) {
+    struct dea_load_point *point = &target.curve->points[i];
+    if (point->stable) {
+      point->pull_in_distance_V = dea_study_distance_to_pull_in(target.curve, point);
+    }
+  }
   return DEA_OK;
 }
 

@@ -16,8 +16,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 static const char study_name[] = "sensitivity";
 
 // Keys -------------------------------------------------------------------------------------------
@@ -54,7 +52,7 @@ static const struct dea_record record = {
     "the "
     "numbers of the design of displacements, field, tension, capacitance and energy, with studies "
     "modal, force and loading of what they add, and of critical voltages that the run has reached",
-    fields, COUNT(fields)};
+    fields, DEA_COUNT(fields)};
 
 static const struct dea_design_section section = {
     .key = study_name, .record = &record, .size = sizeof(struct settings)};
@@ -75,7 +73,7 @@ static const char *const quantities[] = {"force_N",
                                          "frequency_Hz",
                                          "voltage_V"};
 enum {
-  QUANTITIES = COUNT(quantities),
+  QUANTITIES = DEA_COUNT(quantities),
   FORCE = 0,
   CAPACITANCE = 7,
   FREQUENCY = 9,
@@ -83,10 +81,8 @@ enum {
 };
 
 /* Columns that tables share. */
-#define VOLTAGE DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage")
-#define TIP_DEPTH                                                                                  \
-  DEA_NUMBER_COLUMN("tip_depth_m", "m", "mm", 1e3, "tip depth",                                    \
-                    "of a film that a tip is pressed into")
+#define VOLTAGE DEA_KV("voltage_V", "V", "voltage")
+#define TIP_DEPTH DEA_MM("tip_depth_m", "tip depth", "of a film that a tip is pressed into")
 #define HELD_STRETCH                                                                               \
   DEA_NUMBER_COLUMN("held_stretch", "1", "1", 1, "held stretch",                                   \
                     "of the electrode, where that is held and the voltage follows")
@@ -116,8 +112,8 @@ static const struct dea_result_column slope_columns[] = {
                       .meaning = "of load points, or of a monitor"),
     DEA_RESULT_COLUMN(VALUE, "value", "quantity's value", .meaning = "there"),
     SLOPE,
-    DEA_NUMBER_COLUMN("elasticity", NULL, NULL, 1, "per cent by one per cent",
-                      "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"),
+    DEA_BARE("elasticity", "per cent by one per cent",
+             "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"),
     DEA_NUMBER_TOLERANCE,
     DEA_RESULT_COLUMN(VALUE, "change", "change by tolerance", .meaning = "of the quantity"),
     MODE,
@@ -160,19 +156,24 @@ static const struct dea_result_table_type matter_table = DEA_RESULT_TABLE(
 
 // Study ------------------------------------------------------------------------------------------
 
+/* A quantity at a stop. */
+struct quantity {
+  int column;
+  double value, rest; // NAN: not known; what it is at rest
+  size_t mode;        // that a frequency is of, from 1; 0: it is none
+};
+
 /* One voltage. */
 struct stop {
   struct dea_arena memory; // of the arrays
   double voltage_V;
   struct dea_load_point point;
   const struct dea_layout *layout; // with monitors or that is no disc; NULL: none
-  int columns[QUANTITIES];
-  size_t width;              // quantities: QUANTITIES, monitors, then higher modes
-  size_t seen;               // of these without the modes
-  size_t *monitors;          // [seen - QUANTITIES]
-  enum dea_observed *motion; // [seen - QUANTITIES] main ones
-  int *shown;                // [seen - QUANTITIES] their columns
-  double *motion_value;      // [seen - QUANTITIES]
+  struct quantity *of;             // [width]: QUANTITIES, monitors, then higher modes
+  size_t width;
+  size_t seen;                // of these without the modes
+  size_t *monitors;           // [seen - QUANTITIES]
+  enum dea_observed *motions; // [seen - QUANTITIES] main ones
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   size_t number_count;
   bool is_pressed;
@@ -184,44 +185,14 @@ struct stop {
   double *slopes;                       // [number_count][width]; NAN of what is not asked for
 };
 
-static double value_of(const struct stop *stop, size_t quantity)
-{
-  if (quantity == FORCE && !stop->is_pressed) { // a bound, where a model knows one
-    return NAN;
-  }
-  return quantity < QUANTITIES   ? dea_point_get(&stop->point, stop->columns[quantity])
-         : quantity < stop->seen ? stop->motion_value[quantity - QUANTITIES]
-                                 : stop->mode_Hz[quantity - stop->seen + 1];
-}
-
-/* From 1; NAN of what is no frequency. */
-static double mode_number(const struct stop *stop, size_t quantity)
-{
-  return quantity == FREQUENCY    ? 1
-         : quantity >= stop->seen ? (double)(quantity - stop->seen) + 2
-                                  : NAN;
-}
-
-static int column_of(const struct stop *stop, size_t quantity)
-{
-  return quantity < QUANTITIES   ? stop->columns[quantity]
-         : quantity < stop->seen ? stop->shown[quantity - QUANTITIES]
-                                 : stop->columns[FREQUENCY];
-}
-
 static double slope_of(const struct stop *stop, size_t number, size_t quantity)
 {
-  return quantity == FORCE && !stop->is_pressed ? NAN
-                                                : stop->slopes[number * stop->width + quantity];
+  return stop->slopes[number * stop->width + quantity];
 }
 
 static double elasticity(const struct stop *stop, size_t number, size_t quantity)
 {
-  double value = value_of(stop, quantity);
-  if (quantity >= QUANTITIES && quantity < stop->seen) {
-    const enum dea_observed motion = stop->motion[quantity - QUANTITIES];
-    value -= motion == DEA_OBSERVED_STRETCH || motion == DEA_OBSERVED_AREA_STRETCH ? 1 : 0;
-  }
+  const double value = stop->of[quantity].value - stop->of[quantity].rest;
   return value != 0 ? slope_of(stop, number, quantity) * stop->numbers[number].value / value : NAN;
 }
 
@@ -229,25 +200,18 @@ static double elasticity(const struct stop *stop, size_t number, size_t quantity
 static size_t leading(const struct stop *stop)
 {
   size_t i = stop->stretch > 0 ? FOLLOWING : 0;
-  while (i + 1 < QUANTITIES && !(fabs(value_of(stop, i)) > 0)) {
+  while (i + 1 < QUANTITIES && !(fabs(stop->of[i].value) > 0)) {
     i++;
   }
   return i;
 }
 
-static double depth_of(const struct stop *stop)
+/* Cells of both tables that say under what the film is: tip depth, held stretch, loaded to. */
+static void fill_under(const struct stop *stop, double out[3])
 {
-  return stop->is_pressed ? stop->pressed.depth_m : NAN;
-}
-
-static double loaded_to(const struct stop *stop)
-{
-  return stop->loaded != NULL ? stop->loaded->value : NAN;
-}
-
-static double held_by(const struct stop *stop)
-{
-  return stop->stretch > 0 ? stop->stretch : NAN;
+  out[0] = stop->is_pressed ? stop->pressed.depth_m : NAN;
+  out[1] = stop->stretch > 0 ? stop->stretch : NAN;
+  out[2] = stop->loaded != NULL ? stop->loaded->value : NAN;
 }
 
 /* Returns out. */
@@ -260,17 +224,19 @@ static dea_status add_matter(struct dea_context *ctx, const struct stop *stop, s
                              size_t i, struct dea_result_table *table)
 {
   const struct dea_design_number *number = &stop->numbers[i];
-  const struct dea_column *column = dea_column_at(ctx, column_of(stop, lead));
+  const struct dea_column *column = dea_column_at(ctx, stop->of[lead].column);
   const bool seen = stop->layout != NULL;
   const struct dea_tolerated tolerated =
       dea_number_tolerated(number, slope_of(stop, i, lead), column->si_unit);
   char value[48], flags[DEA_FLAGS_SIZE];
+  double under[3];
+  fill_under(stop, under);
   dea_number_text(number->value, number->unit, value, sizeof value);
-  struct dea_result_table_value row[COUNT(matter_columns)] = {
+  struct dea_result_table_value row[DEA_COUNT(matter_columns)] = {
       {.number = stop->voltage_V},
-      {.number = depth_of(stop)},
-      {.number = held_by(stop)},
-      {.number = loaded_to(stop)},
+      {.number = under[0]},
+      {.number = under[1]},
+      {.number = under[2]},
       {.number = NAN, .text = seen ? column->key : ""}, // hidden where it is empty
       {.text = number->key},
       {.text = value},
@@ -310,20 +276,23 @@ static dea_status add_slopes(struct dea_context *ctx, const struct stop *stop,
                              struct dea_result_table *table)
 {
   char flags[DEA_FLAGS_SIZE];
+  double under[3];
   flags_of(stop, flags);
+  fill_under(stop, under);
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     const size_t n = i / stop->width, k = i % stop->width;
     const struct dea_design_number *number = &stop->numbers[n];
+    const struct quantity *of = &stop->of[k];
     const double slope = slope_of(stop, n, k);
     if (!isnan(slope)) {
-      DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(stop->voltage_V), DEA_TEXT_CELL(number->key),
-                                 DEA_CELL(number->value), DEA_TEXT_CELL(number->unit),
-                                 DEA_CELL((double)column_of(stop, k)), DEA_CELL(value_of(stop, k)),
-                                 DEA_CELL(slope), DEA_CELL(elasticity(stop, n, k)),
-                                 DEA_CELL(number->tolerance), DEA_CELL(slope * number->tolerance),
-                                 DEA_CELL(mode_number(stop, k)), DEA_CELL(depth_of(stop)),
-                                 DEA_CELL(held_by(stop)), DEA_CELL(loaded_to(stop)),
-                                 DEA_TEXT_CELL(flags)));
+      DEA_TRY(ctx,
+              DEA_TABLE_ADD(ctx, table, DEA_CELL(stop->voltage_V), DEA_TEXT_CELL(number->key),
+                            DEA_CELL(number->value), DEA_TEXT_CELL(number->unit),
+                            DEA_CELL((double)of->column), DEA_CELL(of->value), DEA_CELL(slope),
+                            DEA_CELL(elasticity(stop, n, k)), DEA_CELL(number->tolerance),
+                            DEA_CELL(slope * number->tolerance),
+                            DEA_CELL(of->mode > 0 ? (double)of->mode : NAN), DEA_CELL(under[0]),
+                            DEA_CELL(under[1]), DEA_CELL(under[2]), DEA_TEXT_CELL(flags)));
     }
   }
   return DEA_OK;
@@ -342,46 +311,66 @@ static enum dea_observed motion_of(const struct stop *stop, size_t i, const doub
 }
 
 /* Monitors of the device, with their motions. */
-static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_type *type,
-                                struct dea_model *model, const struct dea_device *device,
+static dea_status find_monitors(struct dea_context *ctx, const struct dea_study_job *job,
                                 struct stop *stop)
 {
+  const size_t count = stop->layout->monitor_count;
   struct dea_observation seen;
   struct dea_monitor_column *columns;
   size_t column_count;
-  stop->seen = QUANTITIES;
-  if (type->observe == NULL || !dea_device_is_observed(device)) {
-    return DEA_OK;
-  }
-  stop->layout = device->layout;
-  const size_t count = stop->layout->monitor_count;
   stop->monitors = dea_arena_alloc(&stop->memory, count, sizeof *stop->monitors);
-  stop->motion = dea_arena_alloc(&stop->memory, count, sizeof *stop->motion);
-  stop->motion_value = dea_arena_alloc(&stop->memory, count, sizeof *stop->motion_value);
-  stop->shown = dea_arena_alloc(&stop->memory, count, sizeof *stop->shown);
+  stop->motions = dea_arena_alloc(&stop->memory, count, sizeof *stop->motions);
   DEA_TRY(ctx, dea_layout_columns(&stop->memory, stop->layout, &columns, &column_count));
   DEA_TRY(ctx, dea_arena_status(&stop->memory));
-  DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
-  stop->seen += count;
+  DEA_TRY(ctx, job->type->observe(ctx, job->model, &seen));
   for (size_t i = 0; i < count; i++) {
+    const enum dea_observed motion = motion_of(stop, i, seen.monitor[i]);
+    struct quantity *of = &stop->of[QUANTITIES + i];
     stop->monitors[i] = i;
-    stop->motion[i] = motion_of(stop, i, seen.monitor[i]);
-    stop->motion_value[i] = seen.monitor[i][stop->motion[i]];
+    stop->motions[i] = motion;
+    of->value = seen.monitor[i][motion];
+    of->rest = motion == DEA_OBSERVED_STRETCH || motion == DEA_OBSERVED_AREA_STRETCH ? 1 : 0;
   }
   for (size_t k = 0; k < column_count; k++) {
     const struct dea_monitor_column *c = &columns[k];
-    if (c->source == DEA_OF_MONITOR && c->number == stop->motion[c->index]) {
-      stop->shown[c->index] = c->column;
+    if (c->source == DEA_OF_MONITOR && c->number == stop->motions[c->index]) {
+      stop->of[QUANTITIES + c->index].column = c->column;
     }
   }
   return DEA_OK;
 }
 
+/* All that slopes are of. The force is a bound where no tip is, and a model knows one. */
+static dea_status find_quantities(struct dea_context *ctx, const struct dea_study_job *job,
+                                  struct stop *stop)
+{
+  const struct dea_device *device = job->result->device;
+  const bool observed = job->type->observe != NULL && dea_device_is_observed(device);
+  stop->layout = observed ? device->layout : NULL;
+  stop->seen = QUANTITIES + (observed ? device->layout->monitor_count : 0);
+  stop->width = stop->seen + (stop->mode_count > 1 ? stop->mode_count - 1 : 0);
+  stop->of = dea_arena_alloc(&stop->memory, stop->width, sizeof *stop->of);
+  DEA_TRY(ctx, dea_arena_status(&stop->memory));
+  for (size_t k = 0; k < QUANTITIES; k++) {
+    const int column = dea_point_column_find(quantities[k]);
+    stop->of[k] = (struct quantity){
+        .column = column,
+        .value = k == FORCE && !stop->is_pressed ? NAN : dea_point_get(&stop->point, column),
+        .mode = k == FREQUENCY ? 1 : 0};
+  }
+  for (size_t i = 1; i < stop->mode_count; i++) {
+    stop->of[stop->seen + i - 1] = (struct quantity){
+        .column = stop->of[FREQUENCY].column, .value = stop->mode_Hz[i], .mode = i + 1};
+  }
+  return observed ? find_monitors(ctx, job, stop) : DEA_OK;
+}
+
 /* The lowest modes, where study modal is asked for or has run by its name. */
-static dea_status find_frequency(struct dea_context *ctx, const struct dea_model_type *type,
-                                 struct dea_model *model, const struct dea_result *result,
+static dea_status find_frequency(struct dea_context *ctx, const struct dea_study_job *job,
                                  struct stop *stop)
 {
+  const struct dea_model_type *type = job->type;
+  const struct dea_result *result = job->result;
   struct dea_load_point modes[DEA_DESIGN_MODES_MAX];
   struct dea_field_mesh *shapes;
   const struct settings *settings = dea_design_settings(result->design, &section)->values;
@@ -389,7 +378,7 @@ static dea_status find_frequency(struct dea_context *ctx, const struct dea_model
       dea_modal_asked(result->design) || dea_result_find(result, type->name, "modal") != NULL;
   if (type->modes != NULL && asked) {
     stop->mode_count = (size_t)settings->modes.si;
-    DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, stop->mode_count, modes, &shapes));
+    DEA_TRY(ctx, type->modes(ctx, job->model, &stop->point, stop->mode_count, modes, &shapes));
     dea_field_mesh_destroy(ctx, shapes);
     for (size_t i = 0; i < stop->mode_count; i++) {
       stop->mode_Hz[i] = modes[i].frequency_Hz;
@@ -400,33 +389,30 @@ static dea_status find_frequency(struct dea_context *ctx, const struct dea_model
 }
 
 /* Slopes of all quantities that there are. */
-static dea_status find_slopes(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, const struct dea_result *result,
+static dea_status find_slopes(struct dea_context *ctx, const struct dea_study_job *job,
                               struct stop *stop)
 {
   enum { MOST = QUANTITIES + DEA_DESIGN_MODES_MAX };
   int columns[MOST];
   size_t place[MOST], modes[MOST] = {0}, asked = 0;
-  for (size_t k = 0; k < QUANTITIES; k++) {
+  const size_t seen = stop->seen - QUANTITIES;
+  for (size_t k = 0; k < stop->width - seen; k++) {
+    const size_t at = k < QUANTITIES ? k : k + seen;
     if ((k != FREQUENCY || stop->mode_count > 0) && (k != FOLLOWING || stop->stretch > 0)) {
-      place[asked] = k;
-      columns[asked++] = stop->columns[k];
+      place[asked] = at;
+      modes[asked] = at >= stop->seen ? stop->of[at].mode - 1 : 0;
+      columns[asked++] = stop->of[at].column;
     }
   }
-  for (size_t i = 1; i < stop->mode_count; i++) {
-    place[asked] = stop->seen + i - 1;
-    modes[asked] = i;
-    columns[asked++] = stop->columns[FREQUENCY];
-  }
-  const size_t seen = stop->seen - QUANTITIES, row = asked + seen;
+  const size_t row = asked + seen;
   double *slopes = dea_arena_alloc(&stop->memory, stop->number_count * row, sizeof *slopes);
   stop->slopes =
       dea_arena_alloc(&stop->memory, stop->number_count * stop->width, sizeof *stop->slopes);
   DEA_TRY(ctx, dea_arena_status(&stop->memory));
-  const struct dea_design_gradient ask = {.type = type,
-                                          .model = model,
-                                          .design = result->design,
-                                          .device = result->device,
+  const struct dea_design_gradient ask = {.type = job->type,
+                                          .model = job->model,
+                                          .design = job->result->design,
+                                          .device = job->result->device,
                                           .voltage_V = stop->voltage_V,
                                           .stretch = stop->stretch,
                                           .pressed = stop->is_pressed ? &stop->pressed : NULL,
@@ -437,7 +423,7 @@ static dea_status find_slopes(struct dea_context *ctx, const struct dea_model_ty
                                           .modes = modes,
                                           .monitors = stop->monitors,
                                           .monitor_count = seen,
-                                          .motions = stop->motion};
+                                          .motions = stop->motions};
   DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, slopes));
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     stop->slopes[i] = NAN;
@@ -445,7 +431,8 @@ static dea_status find_slopes(struct dea_context *ctx, const struct dea_model_ty
   for (size_t i = 0; i < stop->number_count; i++) {
     for (size_t k = 0; k < row; k++) {
       const size_t at = k < asked ? place[k] : QUANTITIES + k - asked;
-      stop->slopes[i * stop->width + at] = slopes[i * row + k];
+      const bool known = at != FORCE || stop->is_pressed;
+      stop->slopes[i * stop->width + at] = known ? slopes[i * row + k] : NAN;
     }
   }
   return DEA_OK;
@@ -463,11 +450,11 @@ static void drop_voltage(struct stop *stop)
   stop->number_count = kept;
 }
 
-static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type *type,
-                            struct dea_model *model, const struct dea_result *result,
+static dea_status find_stop(struct dea_context *ctx, const struct dea_study_job *job,
                             struct stop *stop)
 {
-  DEA_TRY(ctx, find_frequency(ctx, type, model, result, stop));
+  const struct dea_result *result = job->result;
+  DEA_TRY(ctx, find_frequency(ctx, job, stop));
   DEA_TRY(ctx, dea_design_numbers(ctx, result->design, result->device, stop->voltage_V, false,
                                   stop->numbers, &stop->number_count));
   if (stop->mode_count == 0) {
@@ -479,12 +466,8 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
   if (stop->is_pressed) {
     dea_tip_numbers(&stop->pressed, stop->numbers, &stop->number_count);
   }
-  for (size_t k = 0; k < QUANTITIES; k++) {
-    stop->columns[k] = dea_point_column_find(quantities[k]);
-  }
-  DEA_TRY(ctx, find_monitors(ctx, type, model, result->device, stop));
-  stop->width = stop->seen + (stop->mode_count > 1 ? stop->mode_count - 1 : 0);
-  return find_slopes(ctx, type, model, result, stop);
+  DEA_TRY(ctx, find_quantities(ctx, job, stop));
+  return find_slopes(ctx, job, stop);
 }
 
 /* Its rows of both tables. Those of what has monitors, or is no disc, are sorted by what each
@@ -505,10 +488,9 @@ static dea_status add_stop(struct dea_context *ctx, const char *model, const str
 
 /* What matters where the model is. tip: that it is pressed by, NULL: none. stretch: that is held in
  * place of the voltage, 0: none. */
-static dea_status record_stop(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, const struct dea_load_point *at,
-                              const struct dea_probe *tip, const struct dea_loaded *loaded,
-                              double stretch, struct dea_result *result)
+static dea_status record_stop(struct dea_context *ctx, const struct dea_study_job *job,
+                              const struct dea_load_point *at, const struct dea_probe *tip,
+                              const struct dea_loaded *loaded, double stretch)
 {
   struct stop *stop = dea_alloc(ctx, 1, sizeof *stop);
   DEA_TRY_MEMORY(stop != NULL);
@@ -521,105 +503,106 @@ static dea_status record_stop(struct dea_context *ctx, const struct dea_model_ty
   if (tip != NULL) {
     stop->pressed = (struct dea_pressed){*tip, at->tip_depth_m};
   }
-  dea_status status = find_stop(ctx, type, model, result, stop);
-  status = status == DEA_OK ? add_stop(ctx, type->name, stop, result) : status;
+  dea_status status = find_stop(ctx, job, stop);
+  status = status == DEA_OK ? add_stop(ctx, job->type->name, stop, job->result) : status;
   dea_arena_free(&stop->memory);
   dea_free(ctx, stop);
   return DEA_CHAIN(ctx, status);
 }
 
-static dea_status solve_stop(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, const struct dea_load_point *at,
-                             size_t number, struct dea_result *result, struct dea_curve *curve)
+static dea_status solve_stop(struct dea_context *ctx, const struct dea_study_job *job,
+                             const struct dea_load_point *at, size_t number,
+                             struct dea_curve *curve)
 {
   (void)number;
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, at));
-  return record_stop(ctx, type, model, at, NULL, NULL, 0, result);
+  return record_stop(ctx, job, at, NULL, NULL, 0);
 }
 
 /* A stop of study force: pressed at 0 V, then all voltages. */
-static dea_status press(struct dea_context *ctx, const struct dea_model_type *type,
-                        struct dea_result *result, size_t number, const double *voltages_V,
-                        size_t count)
+static dea_status press(struct dea_context *ctx, const struct dea_study_job *job, size_t number,
+                        const double *voltages_V, size_t count)
 {
-  const struct dea_probe tip = dea_force_indenter(result->design);
+  const struct dea_model_type *type = job->type;
+  const struct dea_design *design = job->result->design;
+  const struct dea_probe tip = dea_force_indenter(design);
+  struct dea_study_job own = *job;
   struct dea_load_point at;
-  struct dea_model *model;
-  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
-  dea_status status = dea_force_indent(ctx, type, model, result->design, number);
+  DEA_TRY(ctx, dea_model_create(ctx, type, design, job->result->device, &own.model));
+  dea_status status = dea_force_indent(ctx, type, own.model, design, number);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    status = type->solve(ctx, model, voltages_V[i], &at);
-    status = status == DEA_OK ? record_stop(ctx, type, model, &at, &tip, NULL, 0, result) : status;
+    status = type->solve(ctx, own.model, voltages_V[i], &at);
+    status = status == DEA_OK ? record_stop(ctx, &own, &at, &tip, NULL, 0) : status;
   }
-  type->destroy(ctx, model);
+  type->destroy(ctx, own.model);
   return DEA_CHAIN(ctx, status);
 }
 
-/* The end of a line of study loading. Where that ends before, there is a note. */
-static dea_status load(struct dea_context *ctx, const struct dea_model_type *type,
-                       struct dea_result *result, double voltage_V)
+/* A note on what is not known as a way ends before; DEA_OK. */
+static dea_status report_end(struct dea_context *ctx, const struct dea_study_job *job,
+                             const char *where, double value, const char *unit)
 {
+  dea_status status = dea_finding_add(
+      ctx, DEA_NOTE, (struct dea_location){0}, "model %s: not known what matters %s %.4g%s: %s",
+      job->type->name, where, value, unit, dea_context_message(ctx));
+  dea_context_clear(ctx);
+  return status;
+}
+
+/* The end of a line of study loading. */
+static dea_status load(struct dea_context *ctx, const struct dea_study_job *job, double voltage_V)
+{
+  struct dea_study_job own = *job;
   struct dea_load_point at;
-  struct dea_model *model;
   struct dea_loaded loaded;
-  dea_status status = dea_loading_end(ctx, type, result, voltage_V, &model, &at, &loaded);
+  dea_status status = dea_loading_end(ctx, &own, voltage_V, &at, &loaded);
   if (status == DEA_OK) {
-    status = record_stop(ctx, type, model, &at, NULL, &loaded, 0, result);
-    type->destroy(ctx, model);
-  } else if (status != DEA_E_MEMORY && status != DEA_E_INTERRUPTED) {
-    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                             "model %s: not known what matters where compute.loading ends at %.4g "
-                             "kV: %s",
-                             type->name, 1e-3 * voltage_V, dea_context_message(ctx));
-    dea_context_clear(ctx);
+    status = record_stop(ctx, &own, &at, NULL, &loaded, 0);
+    job->type->destroy(ctx, own.model);
+  } else if (!dea_status_ends(status)) {
+    status = report_end(ctx, job, "where compute.loading ends at", 1e-3 * voltage_V, " kV");
   }
   return DEA_CHAIN(ctx, status);
 }
 
-/* A point of the path. Where that ends before, there is a note. */
-static dea_status follow(struct dea_context *ctx, const struct dea_model_type *type,
-                         struct dea_result *result, double stretch)
+/* A point of the path. */
+static dea_status follow(struct dea_context *ctx, const struct dea_study_job *job, double stretch)
 {
+  const struct dea_device *device = job->result->device;
+  struct dea_study_job own = *job;
   struct dea_load_point at;
-  struct dea_model *model;
-  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
-  dea_status status = dea_model_stretch(ctx, type, model, result->device, stretch, &at);
-  const bool ends = status == DEA_E_NO_EQUILIBRIUM || status == DEA_E_NOT_CONVERGED ||
-                    status == DEA_E_UNSUPPORTED;
+  DEA_TRY(ctx, dea_model_create(ctx, job->type, job->result->design, device, &own.model));
+  dea_status status = dea_model_stretch(ctx, job->type, own.model, device, stretch, &at);
   if (status == DEA_OK) {
-    status = record_stop(ctx, type, model, &at, NULL, NULL, stretch, result);
-  } else if (ends) {
-    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                             "model %s: not known what matters at an electrode stretch of %.4g: %s",
-                             type->name, stretch, dea_context_message(ctx));
-    dea_context_clear(ctx);
+    status = record_stop(ctx, &own, &at, NULL, NULL, stretch);
+  } else if (status == DEA_E_NO_EQUILIBRIUM || status == DEA_E_NOT_CONVERGED ||
+             status == DEA_E_UNSUPPORTED) {
+    status = report_end(ctx, job, "at an electrode stretch of", stretch, "");
   }
-  type->destroy(ctx, model);
+  job->type->destroy(ctx, own.model);
   return DEA_CHAIN(ctx, status);
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none
-  const struct settings *settings = dea_design_settings(result->design, &section)->values;
-  double voltages_V[DEA_DESIGN_STOPS_MAX] = {dea_study_highest_V(result)};
+  const struct dea_design *design = job->result->design;
+  const struct settings *settings = dea_design_settings(design, &section)->values;
+  double voltages_V[DEA_DESIGN_STOPS_MAX] = {dea_study_highest_V(job->result)};
   size_t count = settings->voltage_count > 0
-                     ? dea_study_stops(result->design, settings->voltages_V,
-                                       settings->voltage_count, false, voltages_V)
+                     ? dea_study_stops(design, settings->voltages_V, settings->voltage_count, false,
+                                       voltages_V)
                      : 1;
-  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, false, voltages_V, count,
-                                      solve_stop));
-  for (size_t i = 0; type->indent != NULL && i < dea_force_stops(result->design); i++) {
-    DEA_TRY(ctx, press(ctx, type, result, i, voltages_V, count));
+  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, job, study_name, false, voltages_V, count, solve_stop));
+  for (size_t i = 0; job->type->indent != NULL && i < dea_force_stops(design); i++) {
+    DEA_TRY(ctx, press(ctx, job, i, voltages_V, count));
   }
-  for (size_t i = 0; type->move != NULL && i < count && dea_loading_asked(result->design); i++) {
-    DEA_TRY(ctx, load(ctx, type, result, voltages_V[i]));
+  for (size_t i = 0; job->type->move != NULL && i < count && dea_loading_asked(design); i++) {
+    DEA_TRY(ctx, load(ctx, job, voltages_V[i]));
   }
   for (size_t i = 0; i < settings->stretch_count; i++) {
-    DEA_TRY(ctx, follow(ctx, type, result, settings->stretches[i].si));
+    DEA_TRY(ctx, follow(ctx, job, settings->stretches[i].si));
   }
-  return dea_limit_slopes_add(ctx, type, result);
+  return dea_limit_slopes_add(ctx, job);
 }
 
 // The study --------------------------------------------------------------------------------------

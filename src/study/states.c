@@ -4,15 +4,13 @@
 #include "base/schema.h"
 #include "base/sort.h"
 #include "study/observe.h"
-#include "study/study.h"
+#include "study/variant.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static const char study_name[] = "states";
 
@@ -55,7 +53,7 @@ static const struct dea_record record = {
     study_name,
     "study of states, made when this section is there ({}) or with --study: the stable equilibria "
     "of a slack film at voltages (3d)",
-    fields, COUNT(fields)};
+    fields, DEA_COUNT(fields)};
 
 static const struct dea_design_section section = {
     .key = study_name, .record = &record, .size = sizeof(struct settings)};
@@ -83,10 +81,8 @@ struct state {
 
 struct search {
   struct dea_context *ctx;
-  const struct dea_model_type *type;
-  struct dea_model *model; // owned
+  struct dea_study_job job; // with a model of its own
   const struct settings *settings;
-  struct dea_result *result;
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   size_t level_count; // reached
   struct state *states;
@@ -102,8 +98,8 @@ static void free_search(struct search *s)
     dea_state_free_values(s->ctx, &s->states[i].saved);
     dea_free(s->ctx, s->states[i].u);
   }
-  if (s->model != NULL) {
-    s->type->destroy(s->ctx, s->model);
+  if (s->job.model != NULL) {
+    s->job.type->destroy(s->ctx, s->job.model);
   }
   dea_free(s->ctx, s->states);
 }
@@ -114,7 +110,7 @@ static dea_status store_film(struct search *s, double **u, size_t *count)
   struct dea_context *ctx = s->ctx;
   struct dea_field_mesh *mesh;
   *u = NULL;
-  DEA_TRY(ctx, dea_model_fields(ctx, s->type, s->model, DEA_FIELDS_SURFACE, &mesh));
+  DEA_TRY(ctx, dea_model_fields(ctx, s->job.type, s->job.model, DEA_FIELDS_SURFACE, &mesh));
   *count = mesh->point_count;
   s->whole = mesh->fold == 0;
   s->parts = s->whole && mesh->fibres > 1 ? mesh->fibres : 0;
@@ -172,7 +168,7 @@ static int find_state(struct search *s, size_t level, const struct dea_load_poin
 static dea_status keep_model(struct search *s, struct dea_state *kept)
 {
   struct dea_state now = {0};
-  DEA_TRY(s->ctx, dea_model_save(s->ctx, s->type, s->model, &now));
+  DEA_TRY(s->ctx, s->job.type->save(s->ctx, s->job.model, &now));
   return dea_state_copy_values(s->ctx, &now, kept);
 }
 
@@ -224,13 +220,7 @@ static size_t states_at(const struct search *s, size_t level)
 /* Failures that only say that there is nothing that way. */
 static dea_status forgive(struct dea_context *ctx, dea_status status)
 {
-  if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED || status == DEA_E_UNSUPPORTED) {
-    return status;
-  }
-  if (status != DEA_OK) {
-    dea_context_clear(ctx);
-  }
-  return DEA_OK;
+  return status == DEA_E_UNSUPPORTED ? status : dea_forgive(ctx, status);
 }
 
 // Search -----------------------------------------------------------------------------------------
@@ -244,7 +234,7 @@ static dea_status sweep_up(struct search *s, size_t voltage_count)
     if (dea_interrupted_anywhere(s->ctx)) {
       return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted before the search for states");
     }
-    DEA_TRY(s->ctx, s->type->solve(s->ctx, s->model, s->voltages_V[i], &point));
+    DEA_TRY(s->ctx, s->job.type->solve(s->ctx, s->job.model, s->voltages_V[i], &point));
     DEA_TRY(s->ctx, add_state(s, i, &point, "up from 0 V", &at));
     s->level_count = i + 1;
     if (i > 0) {
@@ -263,8 +253,8 @@ static dea_status lead(struct search *s, size_t from, int direction)
   char note[NOTE_SIZE];
   int to = NONE;
   s->states[from].led[direction] = true;
-  DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
-  dea_status status = s->type->solve(s->ctx, s->model, s->voltages_V[level], &point);
+  DEA_TRY(s->ctx, s->job.type->load(s->ctx, s->job.model, &s->states[from].saved));
+  dea_status status = s->job.type->solve(s->ctx, s->job.model, s->voltages_V[level], &point);
   snprintf(note, sizeof note, "%s from %.4g kV", direction == UP ? "up" : "down",
            1e-3 * s->states[from].point.voltage_V);
   if (status == DEA_OK && point.stable) {
@@ -284,8 +274,8 @@ static dea_status push(struct search *s, size_t from, const struct dea_push *dir
   if (dea_interrupted_anywhere(s->ctx)) {
     return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted in the search for states");
   }
-  DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
-  dea_status status = s->type->push(s->ctx, s->model, direction, &point, &found);
+  DEA_TRY(s->ctx, s->job.type->load(s->ctx, s->job.model, &s->states[from].saved));
+  dea_status status = s->job.type->push(s->ctx, s->job.model, direction, &point, &found);
   if (status == DEA_OK && found) {
     DEA_TRY(s->ctx, add_state(s, s->states[from].level, &point, note, &to));
   }
@@ -326,8 +316,8 @@ static dea_status search_from(struct search *s, size_t from)
   if (modes == 0 || s->states[from].point.compression_ratio < taut_below) {
     return DEA_OK;
   }
-  DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
-  DEA_TRY(s->ctx, s->type->soften(s->ctx, s->model, modes, stiffness));
+  DEA_TRY(s->ctx, s->job.type->load(s->ctx, s->job.model, &s->states[from].saved));
+  DEA_TRY(s->ctx, s->job.type->soften(s->ctx, s->job.model, modes, stiffness));
   s->states[from].stiffness_N_per_m4 = stiffness[0];
   for (int side = 1; side >= -1; side -= 2) {
     const struct dea_push fold = {.kind = DEA_PUSH_FOLD, .side = side};
@@ -362,14 +352,12 @@ static dea_status work_on(struct search *s, size_t i, bool *worked)
 /* Until every state was followed and searched. The lists grow on the way. */
 static dea_status search_all(struct search *s)
 {
-  char what[DEA_NAME_SIZE + 16];
-  snprintf(what, sizeof what, "%s states", s->type->name);
   for (size_t i = 0; i < s->count; i++) {
     bool worked = true;
     while (worked) {
       DEA_TRY(s->ctx, work_on(s, i, &worked));
     }
-    dea_progress(s->ctx, what, i + 1, s->count);
+    dea_study_progress(s->ctx, &s->job, study_name, i + 1, s->count);
   }
   return DEA_OK;
 }
@@ -420,7 +408,6 @@ static dea_status append_state(struct search *s, size_t i, size_t *branches)
   struct dea_context *ctx = s->ctx;
   struct state *state = &s->states[i];
   struct dea_variant *variant = NULL;
-  struct dea_profile profile;
   char name[NAME_SIZE];
   state->variant = *branches;
   for (size_t k = 0; k < s->count; k++) {
@@ -431,42 +418,33 @@ static dea_status append_state(struct search *s, size_t i, size_t *branches)
   name_branch(state->variant, name);
   if (state->variant == *branches) {
     ++*branches;
-    DEA_TRY(ctx, dea_result_add_variant(ctx, s->result, s->type->name, study_name, name, &variant));
-    if (s->type->size != NULL) {
-      s->type->size(s->model, &variant->size);
-      variant->refinement = dea_model_settings_of(s->result->design).refinement;
-    }
+    DEA_TRY(ctx, dea_result_add_variant(ctx, s->job.result, s->job.type->name, study_name, name,
+                                        &variant));
+    dea_variant_set_size(&s->job, dea_model_settings_of(s->job.result->design).refinement, variant);
     DEA_TRY(ctx, dea_curve_end(ctx, &variant->curve, DEA_OK));
   }
-  variant = &s->result->variants[s->first_variant + state->variant];
-  if (s->type->profile != NULL || s->type->observe != NULL) {
-    DEA_TRY(ctx, dea_model_load(ctx, s->type, s->model, &state->saved));
+  variant = &s->job.result->variants[s->first_variant + state->variant];
+  if (s->job.type->profile != NULL || s->job.type->observe != NULL) {
+    DEA_TRY(ctx, s->job.type->load(ctx, s->job.model, &state->saved));
   }
-  DEA_TRY(ctx, dea_study_add_point(ctx, s->type, s->model, s->result->device, &state->point,
-                                   &variant->curve));
-  if (s->type->profile != NULL) {
-    DEA_TRY(ctx, dea_model_profile(ctx, s->type, s->model, &profile));
-    DEA_TRY(ctx, dea_variant_set_profile(ctx, variant, state->point.voltage_V, &profile));
-  }
-  return DEA_OK;
+  DEA_TRY(ctx,
+          dea_study_add_point(ctx, &s->job, s->job.result->device, &state->point, &variant->curve));
+  return DEA_CHAIN(ctx, dea_variant_take_profile(ctx, &s->job, variant));
 }
 
 enum { ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN };
 
-#define UM(name, head, what) DEA_NUMBER_COLUMN(name, "m", "um", 1e6, head, what)
-#define KV(name, head, what) DEA_NUMBER_COLUMN(name, "V", "kV", 1e-3, head, what)
-#define UJ(name, head, what) DEA_NUMBER_COLUMN(name, "J", "uJ", 1e6, head, what)
 static const struct dea_result_column state_columns[] = {
-    KV("voltage_V", "V", "voltage"),
+    DEA_KV("voltage_V", "V", "voltage"),
     DEA_TEXT_COLUMN("state", "state",
                     "its branch: of the same letter where each leads to the other"),
-    UJ("energy_J", "energy", "potential energy, 0 at rest"),
-    UJ("above_J", "above the lowest", "energy above that of the lowest state found"),
-    UM("centre_z_m", "centre", "displacement of the centre"),
-    UM("fibre_tip_z_m", "fibre tip", "displacement of the fibre tip"),
-    UM("electrode_edge_u_m", "edge", "radial displacement of the electrode's edge"),
-    UM("highest_z_m", "highest", "largest displacement out of the plane"),
-    UM("lowest_z_m", "lowest", "smallest displacement out of the plane"),
+    DEA_UJ("energy_J", "energy", "potential energy, 0 at rest"),
+    DEA_UJ("above_J", "above the lowest", "energy above that of the lowest state found"),
+    DEA_UM("centre_z_m", "centre", "displacement of the centre"),
+    DEA_UM("fibre_tip_z_m", "fibre tip", "displacement of the fibre tip"),
+    DEA_UM("electrode_edge_u_m", "edge", "radial displacement of the electrode's edge"),
+    DEA_UM("highest_z_m", "highest", "largest displacement out of the plane"),
+    DEA_UM("lowest_z_m", "lowest", "smallest displacement out of the plane"),
     DEA_RESULT_COLUMN(COUNT, "unstable_modes", "unstable modes",
                       .meaning = "negative modes of the tangent"),
     DEA_NUMBER_COLUMN("stiffness_N_per_m4", "N/m^4", "N/m^4", 1, "softest",
@@ -479,21 +457,21 @@ static const struct dea_result_column state_columns[] = {
     DEA_TEXT_COLUMN("leads_down", "down to", "state at the voltage before; -: none was found"),
 };
 static const struct dea_result_column band_columns[] = {
-    KV("voltage_V", "V", "voltage"),
+    DEA_KV("voltage_V", "V", "voltage"),
     DEA_RESULT_COLUMN(COUNT, "states", "states",
                       .meaning = "stable states found, copies by symmetry not counted"),
     DEA_TEXT_COLUMN("lowest", "lowest", "state of the lowest energy of those found"),
     DEA_TEXT_COLUMN("up", "from below", "state that the sweep from 0 V comes to"),
     DEA_RESULT_COLUMN(FLAG, "searched", "searched",
                       .meaning = "pushed along soft motions; not where the film is taut"),
-    UM("centre_z_min_m", "centre, least", "of all states found"),
-    UM("centre_z_max_m", "centre, most", "of all states found"),
-    UM("fibre_tip_z_min_m", "tip, least", "of all states found"),
-    UM("fibre_tip_z_max_m", "tip, most", "of all states found"),
-    UM("electrode_edge_u_min_m", "edge, least", "of all states found"),
-    UM("electrode_edge_u_max_m", "edge, most", "of all states found"),
-    UM("lowest_z_m", "lowest z", "smallest displacement out of the plane of all states found"),
-    UM("highest_z_m", "highest z", "largest displacement out of the plane of all states found"),
+    DEA_UM("centre_z_min_m", "centre, least", "of all states found"),
+    DEA_UM("centre_z_max_m", "centre, most", "of all states found"),
+    DEA_UM("fibre_tip_z_min_m", "tip, least", "of all states found"),
+    DEA_UM("fibre_tip_z_max_m", "tip, most", "of all states found"),
+    DEA_UM("electrode_edge_u_min_m", "edge, least", "of all states found"),
+    DEA_UM("electrode_edge_u_max_m", "edge, most", "of all states found"),
+    DEA_UM("lowest_z_m", "lowest z", "smallest displacement out of the plane of all states found"),
+    DEA_UM("highest_z_m", "highest z", "largest displacement out of the plane of all states found"),
 };
 
 static const struct dea_result_table_type state_table =
@@ -549,18 +527,19 @@ static double extreme(const struct search *s, size_t level, const char *key, int
 static dea_status add_band_row(const struct search *s, size_t level, const struct state *lowest,
                                struct dea_result_table *table)
 {
+#define LEAST(key) DEA_CELL(extreme(s, level, key, -1))
+#define MOST(key) DEA_CELL(extreme(s, level, key, 1))
   char name[NAME_SIZE], up[NAME_SIZE];
   name_branch(lowest->variant, name);
   name_branch(s->states[level].variant, up);
-  return DEA_TABLE_ADD(
-      s->ctx, table, DEA_CELL(s->voltages_V[level]), DEA_CELL((double)states_at(s, level)),
-      DEA_TEXT_CELL(name), DEA_TEXT_CELL(up), DEA_CELL(!isnan(s->states[level].stiffness_N_per_m4)),
-      DEA_CELL(extreme(s, level, "centre_z_m", -1)), DEA_CELL(extreme(s, level, "centre_z_m", 1)),
-      DEA_CELL(extreme(s, level, "fibre_tip_z_m", -1)),
-      DEA_CELL(extreme(s, level, "fibre_tip_z_m", 1)),
-      DEA_CELL(extreme(s, level, "electrode_edge_u_m", -1)),
-      DEA_CELL(extreme(s, level, "electrode_edge_u_m", 1)),
-      DEA_CELL(extreme(s, level, "lowest_z_m", -1)), DEA_CELL(extreme(s, level, "highest_z_m", 1)));
+  return DEA_TABLE_ADD(s->ctx, table, DEA_CELL(s->voltages_V[level]),
+                       DEA_CELL((double)states_at(s, level)), DEA_TEXT_CELL(name),
+                       DEA_TEXT_CELL(up), DEA_CELL(!isnan(s->states[level].stiffness_N_per_m4)),
+                       LEAST("centre_z_m"), MOST("centre_z_m"), LEAST("fibre_tip_z_m"),
+                       MOST("fibre_tip_z_m"), LEAST("electrode_edge_u_m"),
+                       MOST("electrode_edge_u_m"), LEAST("lowest_z_m"), MOST("highest_z_m"));
+#undef LEAST
+#undef MOST
 }
 
 /* Branches are lettered as they come, level by level, and then all rows can be written. */
@@ -569,7 +548,7 @@ static dea_status add_result(struct search *s)
   struct dea_context *ctx = s->ctx;
   struct dea_result_table *table;
   size_t branches = 0;
-  s->first_variant = s->result->variant_count;
+  s->first_variant = s->job.result->variant_count;
   for (size_t level = 0; level < s->level_count; level++) {
     bool several = states_at(s, level) > 1;
     for (size_t i = next_state(s, level, s->count); i < s->count; i = next_state(s, level, i)) {
@@ -577,14 +556,15 @@ static dea_status add_result(struct search *s)
       DEA_TRY(ctx, append_state(s, i, &branches));
     }
   }
-  DEA_TRY(ctx, dea_result_add_table(ctx, s->result, &state_table, s->type->name, 0, &table));
+  DEA_TRY(ctx,
+          dea_result_add_table(ctx, s->job.result, &state_table, s->job.type->name, 0, &table));
   for (size_t level = 0; level < s->level_count; level++) {
     size_t lowest = next_state(s, level, s->count);
     for (size_t i = lowest; i < s->count; i = next_state(s, level, i)) {
       DEA_TRY(ctx, add_state_row(s, &s->states[i], s->states[lowest].point.energy_J, table));
     }
   }
-  DEA_TRY(ctx, dea_result_add_table(ctx, s->result, &band_table, s->type->name, 0, &table));
+  DEA_TRY(ctx, dea_result_add_table(ctx, s->job.result, &band_table, s->job.type->name, 0, &table));
   for (size_t level = 0; level < s->level_count; level++) {
     DEA_TRY(ctx, add_band_row(s, level, &s->states[next_state(s, level, s->count)], table));
   }
@@ -593,17 +573,16 @@ static dea_status add_result(struct search *s)
 
 // Run ---------------------------------------------------------------------------------------------
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none
-  const struct dea_design *design = result->design;
+  const struct dea_design *design = job->result->design;
   const struct settings *settings = dea_design_settings(design, &section)->values;
-  struct search s = {.ctx = ctx, .type = type, .settings = settings, .result = result};
+  struct search s = {.ctx = ctx, .job = *job, .settings = settings};
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, false, s.voltages_V);
   qsort(s.voltages_V, count, sizeof *s.voltages_V, dea_rising);
-  dea_status status = dea_model_create_whole(ctx, type, design, result->device, &s.model);
+  dea_status status =
+      dea_model_create_whole(ctx, job->type, design, job->result->device, &s.job.model);
   dea_status swept = status == DEA_OK ? sweep_up(&s, count) : status;
   status = forgive(ctx, swept); // states at the voltages that there are
   status = status == DEA_OK && s.level_count > 0 ? search_all(&s) : status;
@@ -766,5 +745,5 @@ const struct dea_study dea_study_states = {
     .able_by = offsetof(struct dea_model_type, push),
     .run = run,
     .figures = figures,
-    .figure_count = COUNT(figures),
+    .figure_count = DEA_COUNT(figures),
 };

@@ -23,7 +23,7 @@ dea_status dea_stepper_step(struct dea_context *ctx, struct dea_stepper *s,
     const double to_s = *last ? end_s : *time_s + h;
     struct dea_time_step step = {.length_s = h};
     s->set(s->user, to_s, *last, &step);
-    dea_status status = dea_model_advance(ctx, type, model, &step, out, &error);
+    dea_status status = type->advance(ctx, model, &step, out, &error);
     error = status == DEA_OK ? error : NAN;
     const double factor = factor_of(error, s->tolerance);
     if (error <= s->tolerance) {
@@ -33,8 +33,7 @@ dea_status dea_stepper_step(struct dea_context *ctx, struct dea_stepper *s,
       return DEA_OK;
     }
     s->next_s = h * factor;
-    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED ||
-        (status != DEA_OK && s->next_s < s->failing_s)) {
+    if (dea_status_ends(status) || (status != DEA_OK && s->next_s < s->failing_s)) {
       return status;
     }
     if (s->next_s < s->shortest_s) {

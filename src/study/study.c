@@ -16,7 +16,7 @@ static const struct dea_study *const studies[] = {
     DEA_STUDY_LIST(STUDY_ROW)
 #undef STUDY_ROW
 };
-enum { STUDIES = sizeof studies / sizeof studies[0] };
+enum { STUDIES = DEA_COUNT(studies) };
 
 const struct dea_study *const *dea_study_all(size_t *count)
 {
@@ -44,14 +44,20 @@ static bool is_asked(const struct dea_study *study, const struct dea_design *des
   return settings != NULL && settings->written;
 }
 
+/* NULL: there is none. */
+static const struct dea_study *find_study(const char *name)
+{
+  size_t k = 0;
+  while (k < STUDIES && strcmp(studies[k]->name, name) != 0) {
+    k++;
+  }
+  return k < STUDIES ? studies[k] : NULL;
+}
+
 bool dea_study_asked(const struct dea_design *design, const char *name)
 {
-  for (size_t k = 0; k < STUDIES; k++) {
-    if (strcmp(studies[k]->name, name) == 0) {
-      return is_asked(studies[k], design);
-    }
-  }
-  return false;
+  const struct dea_study *study = find_study(name);
+  return study != NULL && is_asked(study, design);
 }
 
 static bool is_wanted(const struct dea_study *study, const char *const names[], size_t name_count,
@@ -85,80 +91,37 @@ bool dea_study_known_to(const struct dea_study *study, const struct dea_model_ty
          (study->able == NULL || study->able(type, result));
 }
 
-/* A note, but not of a study that all designs ask for. */
-static dea_status report_unknown(struct dea_context *ctx, const struct dea_study *study,
-                                 const char *model, bool named)
+/* Whether all designs ask for it. */
+static bool is_of_all(const struct dea_study *study)
 {
-  if (!named && study->asked == NULL && study->keys == NULL) {
-    return DEA_OK;
-  }
-  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                         "model %s does not support %s: no study '%s'", model, study->ability,
-                         study->name);
+  return study->asked == NULL && study->keys == NULL;
 }
 
-/* What there is to say of a study that none of these models knows, added to *text. */
-static void add_known_to_none(const struct dea_study *study,
-                              const struct dea_model_type *const types[], size_t type_count,
-                              const struct dea_result *result, struct dea_text *out)
+/* Models and studies of a design. */
+struct asked {
+  const struct dea_model_type *const *types; // [type_count]
+  size_t type_count;
+  const char *const *names; // [name_count] of studies; NULL: what the design asks for
+  size_t name_count;
+  const struct dea_result *result;
+};
+
+/* What there is to say of a study that none of the models knows, added to *text. */
+static void add_known_to_none(const struct dea_study *study, const struct asked *a,
+                              struct dea_text *out)
 {
   size_t count;
   const struct dea_model_type *const *all = dea_model_all(&count);
   dea_text_add(out, "no study '%s' of model ", study->name);
-  for (size_t i = 0; i < type_count; i++) {
-    dea_text_add(out, "%s%s", i > 0 ? " or " : "", types[i]->name);
+  for (size_t i = 0; i < a->type_count; i++) {
+    dea_text_add(out, "%s%s", i > 0 ? " or " : "", a->types[i]->name);
   }
-  dea_text_add(out, ", which %s not support %s", type_count > 1 ? "do" : "does", study->ability);
+  dea_text_add(out, ", which %s not support %s", a->type_count > 1 ? "do" : "does", study->ability);
   for (size_t i = 0, able = 0; i < count; i++) {
-    if (dea_study_known_to(study, all[i], result)) {
+    if (dea_study_known_to(study, all[i], a->result)) {
       dea_text_add(out, "%s%s", able++ > 0 ? ", " : "; there is one of ", all[i]->name);
     }
   }
-}
-
-/* Whether some of the models knows what the study needs of it. */
-static bool is_known_to_some(const struct dea_study *study,
-                             const struct dea_model_type *const types[], size_t type_count,
-                             const struct dea_result *result)
-{
-  for (size_t i = 0; i < type_count; i++) {
-    if (dea_study_known_to(study, types[i], result)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/* What of a design the studies that are wanted do not go with. */
-static dea_status refuse(struct dea_context *ctx, const struct dea_model_type *const types[],
-                         size_t type_count, const char *const names[], size_t name_count,
-                         const struct dea_result *result)
-{
-  for (size_t k = 0; k < STUDIES; k++) {
-    if (studies[k]->refuse != NULL && is_wanted(studies[k], names, name_count, result->design) &&
-        is_known_to_some(studies[k], types, type_count, result)) {
-      DEA_TRY(ctx, studies[k]->refuse(ctx, result->design, result->device));
-    }
-  }
-  return DEA_OK;
-}
-
-dea_status dea_study_check_models(struct dea_context *ctx,
-                                  const struct dea_model_type *const types[], size_t type_count,
-                                  const char *const names[], size_t name_count,
-                                  const struct dea_result *result)
-{
-  for (size_t k = 0; names != NULL && k < STUDIES; k++) {
-    if (is_wanted(studies[k], names, name_count, result->design) &&
-        !is_known_to_some(studies[k], types, type_count, result)) {
-      struct dea_text text = {.ctx = ctx};
-      add_known_to_none(studies[k], types, type_count, result, &text);
-      dea_status status = dea_fail(ctx, DEA_E_ARGUMENT, "%s", dea_text_get(&text));
-      dea_text_free(&text);
-      return status;
-    }
-  }
-  return refuse(ctx, types, type_count, names, name_count, result);
 }
 
 /* What of a design asks for a study: its section, or what else does without one. */
@@ -170,57 +133,78 @@ static struct dea_location place_of(const struct dea_study *study, const struct 
   return section != NULL ? section->key_place : design->compute.models[0].location;
 }
 
+/* Of a study that some of the models know: whether it goes with the design. Of one that none knows:
+ * a failure where it is named. warns: only of such studies that the design asks for, a warning. */
+static dea_status check(struct dea_context *ctx, const struct dea_study *study,
+                        const struct asked *a, bool warns)
+{
+  const struct dea_design *design = a->result->design;
+  for (size_t i = 0; i < a->type_count; i++) {
+    if (dea_study_known_to(study, a->types[i], a->result)) {
+      return warns || study->refuse == NULL ? DEA_OK
+                                            : study->refuse(ctx, design, a->result->device);
+    }
+  }
+  if (a->names == NULL && (!warns || is_of_all(study))) {
+    return DEA_OK;
+  }
+  struct dea_text text = {.ctx = ctx};
+  add_known_to_none(study, a, &text);
+  dea_status status = warns ? dea_finding_add(ctx, DEA_WARNING, place_of(study, design),
+                                              "%s (compute.models)", dea_text_get(&text))
+                            : dea_fail(ctx, DEA_E_ARGUMENT, "%s", dea_text_get(&text));
+  dea_text_free(&text);
+  return status;
+}
+
+static dea_status check_all(struct dea_context *ctx, const struct asked *a, bool warns)
+{
+  for (size_t k = 0; k < STUDIES; k++) {
+    if (is_wanted(studies[k], a->names, a->name_count, a->result->design)) {
+      DEA_TRY(ctx, check(ctx, studies[k], a, warns));
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_study_check_models(struct dea_context *ctx,
+                                  const struct dea_model_type *const types[], size_t type_count,
+                                  const char *const names[], size_t name_count,
+                                  const struct dea_result *result)
+{
+  const struct asked asked = {types, type_count, names, name_count, result};
+  return DEA_CHAIN(ctx, check_all(ctx, &asked, false));
+}
+
 dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *design,
                           const struct dea_device *device)
 {
   const struct dea_model_type *types[DEA_DESIGN_MODELS_MAX];
   const struct dea_result result = {.design = design, .device = device};
-  const size_t count = design->compute.model_count;
-  for (size_t i = 0; i < count; i++) {
+  const struct asked asked = {types, design->compute.model_count, NULL, 0, &result};
+  for (size_t i = 0; i < asked.type_count; i++) {
     types[i] = dea_model_find(design->compute.models[i].text);
     if (types[i] == NULL) {
       return DEA_OK; // an error already
     }
   }
-  for (size_t k = 0; k < STUDIES; k++) {
-    const bool of_all = studies[k]->asked == NULL && studies[k]->keys == NULL;
-    if (!of_all && is_wanted(studies[k], NULL, 0, design) &&
-        !is_known_to_some(studies[k], types, count, &result)) {
-      struct dea_text text = {.ctx = ctx};
-      add_known_to_none(studies[k], types, count, &result, &text);
-      dea_status status = dea_finding_add(ctx, DEA_WARNING, place_of(studies[k], design),
-                                          "%s (compute.models)", dea_text_get(&text));
-      dea_text_free(&text);
-      DEA_TRY(ctx, status);
-    }
-  }
-  return DEA_OK;
+  return DEA_CHAIN(ctx, check_all(ctx, &asked, true));
 }
 
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design)
 {
   for (size_t i = 0; names != NULL && i < name_count; i++) {
-    size_t k = 0;
-    while (k < STUDIES && strcmp(studies[k]->name, names[i]) != 0) {
-      k++;
-    }
-    if (k == STUDIES) {
+    const struct dea_study *study = find_study(names[i]);
+    if (study == NULL) {
       return unknown_name(ctx, names[i]);
     }
-    if (studies[k]->needs != NULL && !is_asked(studies[k], design)) {
+    if (study->needs != NULL && !is_asked(study, design)) {
       return dea_fail(ctx, DEA_E_DESIGN, "the study '%s' needs %s in the design", names[i],
-                      studies[k]->needs);
+                      study->needs);
     }
   }
   return DEA_OK;
-}
-
-/* Tables of a study, also of one that failed: partial results are results. */
-static dea_status build_tables(struct dea_context *ctx, const struct dea_study *study,
-                               const char *model, struct dea_result *result)
-{
-  return study->tables != NULL ? study->tables(ctx, model, result) : DEA_OK;
 }
 
 /* What a run of several studies ends with: the first that failed, and what it said. */
@@ -239,13 +223,13 @@ static void add_outcome(const struct dea_context *ctx, dea_status status, struct
 
 /* The model for the first study that wants one. A film whose rest is not found is a sweep that ends
  * before its first point, where one is wanted: it too has a verdict. */
-static dea_status build_model(struct dea_context *ctx, const struct dea_model_type *type,
-                              bool sweeps, struct dea_result *result, struct dea_model **out)
+static dea_status build_model(struct dea_context *ctx, bool sweeps, struct dea_study_job *job)
 {
   struct dea_curve *curve;
-  dea_status status = dea_model_create(ctx, type, result->design, result->device, out);
+  struct dea_result *result = job->result;
+  dea_status status = dea_model_create(ctx, job->type, result->design, result->device, &job->model);
   if (sweeps && dea_verdict_of(status)[0] != '\0') {
-    DEA_TRY(ctx, dea_result_get_curve(ctx, result, type->name, "sweep", &curve));
+    DEA_TRY(ctx, dea_result_get_curve(ctx, result, job->type->name, "sweep", &curve));
     dea_curve_end(ctx, curve, status);
   }
   return DEA_CHAIN(ctx, status);
@@ -262,38 +246,44 @@ dea_status dea_study_run_with(struct dea_context *ctx, const struct dea_model_ty
                               const struct dea_study_services *services, struct dea_result *result)
 {
   static const struct dea_study_services none = {0};
-  struct dea_model *model = NULL; // made for the first study that wants it
+  struct dea_study_job shared = {.type = type, .result = result, .services = none};
+  shared.services = services != NULL ? *services : none;
+  const struct dea_study_job own = shared;
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
   struct outcome first = {.status = DEA_OK};
   for (size_t i = 0; i < STUDIES; i++) {
-    if (!is_wanted(studies[i], names, name_count, result->design)) {
+    const struct dea_study *study = studies[i];
+    if (!is_wanted(study, names, name_count, result->design)) {
       continue;
     }
-    if (!dea_study_known_to(studies[i], type, result)) {
-      add_outcome(ctx, report_unknown(ctx, studies[i], type->name, names != NULL), &first);
+    if (!dea_study_known_to(study, type, result)) {
+      dea_status status = names == NULL && is_of_all(study)
+                              ? DEA_OK
+                              : dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                                "model %s does not support %s: no study '%s'",
+                                                type->name, study->ability, study->name);
+      add_outcome(ctx, status, &first);
       continue;
     }
-    if (!studies[i]->own_models && model == NULL) {
+    if (!study->own_models && shared.model == NULL) {
       const bool sweeps = is_wanted(&dea_study_sweep, names, name_count, result->design);
-      DEA_TRY(ctx, build_model(ctx, type, sweeps, result, &model));
+      DEA_TRY(ctx, build_model(ctx, sweeps, &shared));
     }
-    struct dea_model *lent = studies[i]->own_models ? NULL : model;
-    dea_status status =
-        studies[i]->run != NULL
-            ? studies[i]->run(ctx, type, lent, result)
-            : studies[i]->run_with(ctx, type, lent, services != NULL ? services : &none, result);
+    dea_status status = study->run(ctx, study->own_models ? &own : &shared);
     add_outcome(ctx, status, &first);
     if (status == DEA_E_MEMORY) {
       break;
     }
-    status = build_tables(ctx, studies[i], type->name, result);
-    add_outcome(ctx, status, &first);
+    if (study->tables != NULL) { // also of one that failed: partial results are results
+      status = study->tables(ctx, type->name, result);
+      add_outcome(ctx, status, &first);
+    }
     if (first.status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
       break;
     }
   }
-  if (model != NULL) {
-    type->destroy(ctx, model);
+  if (shared.model != NULL) {
+    type->destroy(ctx, shared.model);
   }
   bool said = first.status == DEA_OK || strcmp(dea_context_message(ctx), first.message) == 0;
   return said ? first.status : dea_fail(ctx, first.status, "%s", first.message);

@@ -7,45 +7,26 @@
 #include "study/observe.h"
 #include "study/study.h"
 
-#include <math.h>
 #include <stdio.h>
 
-/* Voltage of the next limit point above this stretch on the model's path, minus the point's
- * voltage; NAN when the path has none. */
-static double distance_to_pull_in(const struct dea_curve *path, const struct dea_load_point *point)
+/* Profile and surface of the last point of the curve, of a model that has them. */
+static dea_status add_shapes(struct dea_context *ctx, const struct dea_study_job *job,
+                             const struct dea_curve *curve)
 {
-  for (size_t k = 0; path != NULL && k < path->event_count; k++) {
-    const struct dea_event *event = &path->events[k];
-    if (event->kind == DEA_EVENT_PULL_IN &&
-        event->point.electrode_stretch >= point->electrode_stretch) {
-      return event->point.voltage_V - point->voltage_V;
-    }
-  }
-  return NAN;
-}
-
-static dea_status add_profile(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, double voltage_V, struct dea_result *result)
-{
+  const struct dea_model_type *type = job->type;
+  const size_t last = curve->count - 1;
+  const double voltage_V = curve->points[last].voltage_V;
   struct dea_profile profile;
-  if (type->profile == NULL) {
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, dea_model_profile(ctx, type, model, &profile));
-  return dea_result_add_profile(ctx, result, type->name, voltage_V, &profile);
-}
-
-static dea_status add_surface(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, const struct dea_curve *curve,
-                              struct dea_result *result)
-{
-  size_t last = curve->count - 1;
   struct dea_field_mesh *mesh;
-  if (type->fields == NULL) {
-    return DEA_OK;
+  if (type->profile != NULL) {
+    DEA_TRY(ctx, type->profile(ctx, job->model, &profile));
+    DEA_TRY(ctx, dea_result_add_profile(ctx, job->result, type->name, voltage_V, &profile));
   }
-  DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_SURFACE, &mesh));
-  return dea_result_add_surface(ctx, result, type->name, last, curve->points[last].voltage_V, mesh);
+  if (type->fields != NULL) {
+    DEA_TRY(ctx, type->fields(ctx, job->model, DEA_FIELDS_SURFACE, &mesh));
+    DEA_TRY(ctx, dea_result_add_surface(ctx, job->result, type->name, last, voltage_V, mesh));
+  }
+  return DEA_OK;
 }
 
 // Checkpoints ------------------------------------------------------------------------------------
@@ -77,20 +58,22 @@ static dea_status mark_design(struct dea_context *ctx, const struct dea_result *
 }
 
 /* Gives fields and state of the last point to who keeps them. */
-static dea_status keep_point(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, const struct dea_checkpoint_sink *sink,
-                             const struct dea_result *result, const struct dea_curve *curve)
+static dea_status keep_point(struct dea_context *ctx, const struct dea_study_job *job,
+                             const struct dea_curve *curve)
 {
+  const struct dea_model_type *type = job->type;
+  const struct dea_checkpoint_sink *sink = job->services.checkpoint;
+  const struct dea_result *result = job->result;
   struct dea_field_mesh *fields = NULL;
   struct dea_state state = {0};
   struct dea_text identity = {.ctx = ctx};
   dea_status status = DEA_OK;
   if (type->fields != NULL && result->design != NULL &&
       fields_wanted(result->design, curve->points[curve->count - 1].voltage_V)) {
-    DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_VOLUME, &fields));
+    DEA_TRY(ctx, type->fields(ctx, job->model, DEA_FIELDS_VOLUME, &fields));
   }
   if (type->save != NULL) {
-    status = dea_model_save(ctx, type, model, &state);
+    status = type->save(ctx, job->model, &state);
     status = status == DEA_OK ? mark_design(ctx, result, &identity, &state) : status;
   }
   if (status == DEA_OK) {
@@ -103,16 +86,16 @@ static dea_status keep_point(struct dea_context *ctx, const struct dea_model_typ
 }
 
 /* Brings a model to the state that was kept at the last point of a curve. */
-static dea_status restore(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_checkpoint_sink *sink,
-                          const struct dea_result *result)
+static dea_status restore(struct dea_context *ctx, const struct dea_study_job *job)
 {
+  const struct dea_model_type *type = job->type;
+  const struct dea_checkpoint_sink *sink = job->services.checkpoint;
   struct dea_state wanted = {0}, state = {0};
   struct dea_text identity = {.ctx = ctx};
-  dea_status status = dea_model_save(ctx, type, model, &wanted);
-  status = status == DEA_OK ? mark_design(ctx, result, &identity, &wanted) : status;
+  dea_status status = type->save(ctx, job->model, &wanted);
+  status = status == DEA_OK ? mark_design(ctx, job->result, &identity, &wanted) : status;
   status = status == DEA_OK ? sink->restore(ctx, sink->user, type->name, &wanted, &state) : status;
-  status = status == DEA_OK ? dea_model_load(ctx, type, model, &state) : status;
+  status = status == DEA_OK ? type->load(ctx, job->model, &state) : status;
   dea_state_free_values(ctx, &state);
   dea_text_free(&identity);
   if (status != DEA_OK) {
@@ -134,24 +117,23 @@ static dea_status add_limit(struct dea_context *ctx,
 }
 
 /* Solves one voltage and adds its point, profile and surface. */
-static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, double voltage_V,
-                              const struct dea_checkpoint_sink *sink, struct dea_result *result,
-                              struct dea_curve *curve)
+static dea_status sweep_point(struct dea_context *ctx, const struct dea_study_job *job,
+                              double voltage_V, struct dea_curve *curve)
 {
+  const struct dea_model_type *type = job->type;
+  const struct dea_result *result = job->result;
   struct dea_load_point point;
   if (dea_interrupted_anywhere(ctx)) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before %.6g kV; %zu points are kept",
                     1e-3 * voltage_V, curve->count);
   }
-  DEA_TRY(ctx, type->solve(ctx, model, voltage_V, &point));
-  DEA_TRY(ctx, add_limit(ctx, type->passed, model, curve));
+  DEA_TRY(ctx, type->solve(ctx, job->model, voltage_V, &point));
+  DEA_TRY(ctx, add_limit(ctx, type->passed, job->model, curve));
   point.pull_in_distance_V =
-      distance_to_pull_in(dea_result_find(result, type->name, "path"), &point);
-  DEA_TRY(ctx, dea_study_add_point(ctx, type, model, result->device, &point, curve));
-  DEA_TRY(ctx, add_profile(ctx, type, model, voltage_V, result));
-  DEA_TRY(ctx, add_surface(ctx, type, model, curve, result));
-  return sink != NULL ? keep_point(ctx, type, model, sink, result, curve) : DEA_OK;
+      dea_study_distance_to_pull_in(dea_result_find(result, type->name, "path"), &point);
+  DEA_TRY(ctx, dea_study_add_point(ctx, job, result->device, &point, curve));
+  DEA_TRY(ctx, add_shapes(ctx, job, curve));
+  return job->services.checkpoint != NULL ? keep_point(ctx, job, curve) : DEA_OK;
 }
 
 /* What a curve says of itself until its sweep has come to an end: it is kept on the way. */
@@ -194,39 +176,35 @@ static dea_status report_trust(struct dea_context *ctx, const struct dea_model_t
   return status;
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, const struct dea_study_services *services,
-                      struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  const struct dea_checkpoint_sink *sink = services->checkpoint;
-  const struct dea_design *design = result->design;
+  const struct dea_model_type *type = job->type;
+  const struct dea_design *design = job->result->design;
   size_t total = design->compute.voltage_count;
-  char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
-  DEA_TRY(ctx, dea_result_get_curve(ctx, result, type->name, "sweep", &curve));
-  snprintf(what, sizeof what, "%s sweep", type->name);
+  DEA_TRY(ctx, dea_result_get_curve(ctx, job->result, type->name, "sweep", &curve));
   open_curve(curve);
-  DEA_TRY(ctx, dea_study_observe_passes(ctx, type, model, result));
+  DEA_TRY(ctx, dea_study_observe_passes(ctx, job));
   dea_status status = DEA_OK;
-  if (sink != NULL && type->load != NULL && curve->count > 0) {
-    status = restore(ctx, type, model, sink, result);
+  if (job->services.checkpoint != NULL && type->load != NULL && curve->count > 0) {
+    status = restore(ctx, job);
   }
   for (size_t i = curve->count; i < total && status == DEA_OK; i++) {
-    status = sweep_point(ctx, type, model, design->compute.voltages_V[i], sink, result, curve);
+    status = sweep_point(ctx, job, design->compute.voltages_V[i], curve);
     if (status == DEA_OK) {
-      dea_progress(ctx, what, i + 1, total);
+      dea_study_progress(ctx, job, "sweep", i + 1, total);
     }
   }
   DEA_TRY(ctx, report_trust(ctx, type, curve));
   dea_curve_end(ctx, curve, status);
   if (dea_verdict_of(status)[0] != '\0') {
-    DEA_TRY(ctx, add_limit(ctx, type->limit, model, curve));
+    DEA_TRY(ctx, add_limit(ctx, type->limit, job->model, curve));
     status = dea_curve_end(ctx, curve, report_slack_pull_in(ctx, curve, status));
   }
   return status;
 }
 
 const struct dea_study dea_study_sweep = {.name = "sweep",
-                                          .run_with = run,
+                                          .run = run,
                                           .figures = dea_observe_figures,
                                           .figure_count = DEA_OBSERVE_FIGURES};

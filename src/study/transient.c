@@ -15,7 +15,6 @@ static const char study_name[] = "transient";
 
 // Keys -------------------------------------------------------------------------------------------
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct settings, member)
 
 /* Settings of compute.transient. */
@@ -56,7 +55,7 @@ static const struct dea_field fields[] = {
 
 static const struct dea_record record = {
     "transient", "study of what happens in time, made when there is a waveform (drive)", fields,
-    COUNT(fields)};
+    DEA_COUNT(fields)};
 
 static bool asked(const struct dea_design *design)
 {
@@ -127,25 +126,23 @@ static const struct settings *settings_of(const struct dea_design *design)
 
 enum { POINTS_MAX = 40000 }; // of a curve; beyond, every second point goes
 
-/* What a source plays. */
+/* A source, and what it plays. */
 struct source {
   const struct dea_waveform *waveform; // NULL: none
   struct dea_waveform *limited;        // the same as a slow source plays it; owned, NULL: as it is
   double constant_V;                   // added to it
+  double now_V, corner_s;              // at this time; that of the next corner
 };
 
 struct playback {
-  const struct dea_model_type *type;
-  struct dea_model *model;
+  struct dea_study_job job; // with a model of its own
   /* Of the supply, [0], and of the channels of the layout, [source_count]; as what follows in the
-   * memory of what is seen: whether a channel has one, and voltages at this time, at the end of a
-   * step, and the time of the next corner of each. */
+   * memory of what is seen: whether a channel has one, and voltages at the end of a step. */
   struct source *sources;
   size_t source_count;
   bool *own, any_own;
-  double *now_V, *next_V, *corner_s;
+  double *next_V;
   struct dea_curve *curve;
-  struct dea_result *result;
   enum dea_fields_at fields; // of electrodes with a sheet resistance, at points that are kept
   double until_s, tolerance, longest_s, interval_s;
   double time_s;
@@ -162,7 +159,6 @@ struct playback {
   double disconnect_s;  // INFINITY: never
   bool inertia;
   size_t reported; // thousandths of the time that progress was told of
-  char what[DEA_NAME_SIZE + 16];
 };
 
 /* Every second point and the last one, and from now on half as many. */
@@ -227,9 +223,10 @@ static dea_status add_fields(struct dea_context *ctx, struct playback *p)
   const size_t last = p->curve->count - 1;
   char name[DEA_NAME_SIZE];
   struct dea_field_mesh *mesh;
-  snprintf(name, sizeof name, "%.50s_%s", p->type->name, study_name);
-  DEA_TRY(ctx, dea_model_fields(ctx, p->type, p->model, DEA_FIELDS_SURFACE, &mesh));
-  return dea_result_add_surface(ctx, p->result, name, last, p->curve->points[last].voltage_V, mesh);
+  snprintf(name, sizeof name, "%.50s_%s", p->job.type->name, study_name);
+  DEA_TRY(ctx, dea_model_fields(ctx, p->job.type, p->job.model, DEA_FIELDS_SURFACE, &mesh));
+  return dea_result_add_surface(ctx, p->job.result, name, last, p->curve->points[last].voltage_V,
+                                mesh);
 }
 
 /* Takes a point to the curve if it is needed there; corner: in any case. */
@@ -239,7 +236,7 @@ static dea_status keep(struct dea_context *ctx, struct playback *p, struct dea_l
   struct dea_curve *curve = p->curve;
   point->time_s = p->time_s; // without the rounding of many small steps
   p->last_V = point->voltage_V;
-  DEA_TRY(ctx, dea_monitor_set_read(ctx, &p->seen, p->type, p->model, false, point));
+  DEA_TRY(ctx, dea_monitor_set_read(ctx, &p->seen, p->job.type, p->job.model, false, point));
   if (curve->count == 0) {
     return add(ctx, p, point);
   }
@@ -301,7 +298,7 @@ static void find_voltages(struct playback *p, double time_s, bool end)
   for (size_t k = 0; k < p->source_count; k++) {
     const struct source *source = &p->sources[k];
     const struct dea_waveform *waveform = played(source);
-    bool before = end && p->corner_s[k] <= time_s * (1 + rounding);
+    bool before = end && source->corner_s <= time_s * (1 + rounding);
     p->next_V[k] = source->constant_V + (waveform == NULL ? 0
                                          : before         ? dea_waveform_before(waveform, time_s)
                                                           : dea_waveform_value(waveform, time_s));
@@ -311,14 +308,16 @@ static void find_voltages(struct playback *p, double time_s, bool end)
 /* Voltages at next_V, which a step has gone to. */
 static void set_voltages(struct playback *p)
 {
-  memcpy(p->now_V, p->next_V, p->source_count * sizeof *p->now_V);
+  for (size_t k = 0; k < p->source_count; k++) {
+    p->sources[k].now_V = p->next_V[k];
+  }
 }
 
 static bool voltages_jump(const struct playback *p)
 {
   bool any = false;
   for (size_t k = 0; k < p->source_count; k++) {
-    any = any || p->next_V[k] != p->now_V[k];
+    any = any || p->next_V[k] != p->sources[k].now_V;
   }
   return any;
 }
@@ -328,9 +327,10 @@ static double find_corner(struct playback *p)
 {
   double first_s = p->time_s < p->disconnect_s ? p->disconnect_s : INFINITY;
   for (size_t k = 0; k < p->source_count; k++) {
-    const struct dea_waveform *waveform = played(&p->sources[k]);
-    p->corner_s[k] = waveform != NULL ? dea_waveform_corner(waveform, p->time_s) : INFINITY;
-    first_s = fmin(first_s, p->corner_s[k]);
+    struct source *source = &p->sources[k];
+    const struct dea_waveform *waveform = played(source);
+    source->corner_s = waveform != NULL ? dea_waveform_corner(waveform, p->time_s) : INFINITY;
+    first_s = fmin(first_s, source->corner_s);
   }
   return first_s;
 }
@@ -358,11 +358,11 @@ static dea_status jump(struct dea_context *ctx, struct playback *p)
   struct dea_load_point point;
   double error;
   set_step(p, &step);
-  dea_status status = dea_model_advance(ctx, p->type, p->model, &step, &point, &error);
+  dea_status status = p->job.type->advance(ctx, p->job.model, &step, &point, &error);
   if (status != DEA_OK) {
     return status == DEA_E_MEMORY ? status : stop(ctx, p, status);
   }
-  p->type->accept(p->model);
+  p->job.type->accept(p->job.model);
   set_voltages(p);
   return keep(ctx, p, &point, true);
 }
@@ -377,10 +377,10 @@ static dea_status one_step(struct dea_context *ctx, struct playback *p, double e
   struct dea_load_point point;
   bool last;
   dea_status status =
-      dea_stepper_step(ctx, &stepper, p->type, p->model, end, &p->time_s, &last, &point);
+      dea_stepper_step(ctx, &stepper, p->job.type, p->job.model, end, &p->time_s, &last, &point);
   p->next_s = stepper.next_s;
   if (status != DEA_OK) {
-    return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED ? status : stop(ctx, p, status);
+    return dea_status_ends(status) ? status : stop(ctx, p, status);
   }
   set_voltages(p);
   return keep(ctx, p, &point, last);
@@ -391,7 +391,7 @@ static void report_progress(struct dea_context *ctx, struct playback *p)
   static const size_t whole = 100;
   size_t done = p->time_s < p->until_s ? (size_t)((double)whole * p->time_s / p->until_s) : whole;
   if (done > p->reported) {
-    dea_progress(ctx, p->what, done, whole);
+    dea_study_progress(ctx, &p->job, "transient (%)", done, whole);
     p->reported = done;
   }
 }
@@ -427,9 +427,7 @@ static dea_status build_sources(struct dea_context *ctx, const struct dea_result
   struct dea_arena *memory = &p->seen.memory;
   p->sources = dea_arena_alloc(memory, count, sizeof *p->sources);
   p->own = dea_arena_alloc(memory, count, sizeof *p->own);
-  p->now_V = dea_arena_alloc(memory, count, sizeof *p->now_V);
   p->next_V = dea_arena_alloc(memory, count, sizeof *p->next_V);
-  p->corner_s = dea_arena_alloc(memory, count, sizeof *p->corner_s);
   DEA_TRY(ctx, dea_arena_status(memory));
   p->source_count = count;
   p->sources[0].waveform = result->design->drive.waveform;
@@ -437,8 +435,8 @@ static dea_status build_sources(struct dea_context *ctx, const struct dea_result
     const struct dea_parts_channel *from = &parts->channels[i];
     size_t k = dea_layout_find_channel(result->device->layout, from->name.text);
     if (from->waveform != NULL && k < count) {
-      p->sources[k] = (struct source){.waveform = from->waveform, .constant_V = from->voltage_V.si};
-      p->now_V[k] = from->voltage_V.si; // before the start
+      const double V = from->voltage_V.si; // also before the start
+      p->sources[k] = (struct source){.waveform = from->waveform, .constant_V = V, .now_V = V};
       p->own[k] = p->any_own = true;
     }
   }
@@ -488,13 +486,13 @@ static dea_status indent(struct dea_context *ctx, const struct dea_design *desig
   if (settings_of(design)->indent.value == 0) {
     return DEA_OK;
   }
-  if (p->type->indent == NULL) {
+  if (p->job.type->indent == NULL) {
     return dea_finding_add(
         ctx, DEA_NOTE, (struct dea_location){0},
         "model %s does not support tips: compute.transient.indent is without effect there",
-        p->type->name);
+        p->job.type->name);
   }
-  return dea_force_indent(ctx, p->type, p->model, design, 0);
+  return dea_force_indent(ctx, p->job.type, p->job.model, design, 0);
 }
 
 /* From the film at rest at 0 V. */
@@ -510,16 +508,16 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
       .rho_inf = settings_of(design)->rho_inf.si,
   };
   struct dea_load_point point;
-  DEA_TRY(ctx, p->type->solve(ctx, p->model, 0, &point));
+  DEA_TRY(ctx, p->job.type->solve(ctx, p->job.model, 0, &point));
   DEA_TRY(ctx, indent(ctx, design, p));
-  DEA_TRY(ctx, dea_model_begin(ctx, p->type, p->model, &options, &point));
+  DEA_TRY(ctx, p->job.type->begin(ctx, p->job.model, &options, &point));
   return keep(ctx, p, &point, true);
 }
 
 static dea_status reserve(struct dea_context *ctx, const struct dea_result *result,
                           struct playback *p)
 {
-  DEA_TRY(ctx, dea_monitor_set_init(ctx, p->type, result->device, &p->seen));
+  DEA_TRY(ctx, dea_monitor_set_init(ctx, p->job.type, result->device, &p->seen));
   p->spare = dea_monitor_values_copy(&p->seen.memory, p->seen.values);
   p->seen_largest = dea_arena_alloc(&p->seen.memory, p->seen.count, sizeof *p->seen_largest);
   return dea_arena_status(&p->seen.memory);
@@ -535,20 +533,19 @@ static enum dea_fields_at fields_of(const struct dea_model_type *type,
              : DEA_FIELDS_NONE;
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none: this starts from rest
-  struct playback p = {.type = type,
-                       .result = result,
+  const struct dea_model_type *type = job->type;
+  struct dea_result *result = job->result;
+  struct playback p = {.job = *job,
                        .fields = fields_of(type, result),
                        .inertia = settings_of(result->design)->inertia.value == 1};
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
-  snprintf(p.what, sizeof p.what, "%s transient (%%)", type->name);
   dea_status status = reserve(ctx, result, &p);
   status = status == DEA_OK ? build_sources(ctx, result, &p) : status;
-  status = status == DEA_OK ? dea_model_create(ctx, type, result->design, result->device, &p.model)
-                            : status;
+  status = status == DEA_OK
+               ? dea_model_create(ctx, type, result->design, result->device, &p.job.model)
+               : status;
   status = status == DEA_OK ? prepare(ctx, result->design, &p) : status;
   status = status == DEA_OK ? begin(ctx, result->design, &p) : status;
   status = status == DEA_OK ? play(ctx, &p) : status;
@@ -560,8 +557,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     dea_waveform_destroy(p.sources[k].limited);
   }
   dea_monitor_set_free(&p.seen);
-  if (p.model != NULL) {
-    type->destroy(ctx, p.model);
+  if (p.job.model != NULL) {
+    type->destroy(ctx, p.job.model);
   }
   return dea_curve_end(ctx, p.curve, status);
 }
@@ -577,13 +574,11 @@ static const struct dea_result_column fact_columns[] = {
                     "quantity of load points that the cycles are read from"),
 };
 static const struct dea_result_column energy_columns[] = {
-    DEA_NUMBER_COLUMN("supply_work_J", "J", "uJ", 1e6, "the supply gave",
-                      "work of the supply, from the first to the worst point"),
-    DEA_NUMBER_COLUMN("stored_J", "J", "uJ", 1e6, "stored",
-                      "in the film, its field and its branches"),
-    DEA_NUMBER_COLUMN("kinetic_J", "J", "uJ", 1e6, "moving", "kinetic energy"),
-    DEA_NUMBER_COLUMN("dissipated_J", "J", "uJ", 1e6, "lost",
-                      "in branches, resistance and leakage"),
+    DEA_UJ("supply_work_J", "the supply gave",
+           "work of the supply, from the first to the worst point"),
+    DEA_UJ("stored_J", "stored", "in the film, its field and its branches"),
+    DEA_UJ("kinetic_J", "moving", "kinetic energy"),
+    DEA_UJ("dissipated_J", "lost", "in branches, resistance and leakage"),
     DEA_NUMBER_COLUMN("not_accounted", NULL, "%", 100, "not accounted for",
                       "difference, relative to the largest of these energies"),
 };
@@ -600,7 +595,7 @@ static const struct dea_result_column cycle_columns[] = {
                       "time from 10 to 90 % of the way to the farthest"),
 };
 static const struct dea_result_column creep_columns[] = {
-    DEA_NUMBER_COLUMN("level_V", "V", "kV", 1e-3, "V", "of the waveform"),
+    DEA_KV("level_V", "V", "of the waveform"),
     DEA_RESULT_COLUMN(COUNT, "cycles", "cycles", .meaning = "at this voltage"),
     DEA_RESULT_COLUMN(VALUE, "first", "first", .meaning = "farthest of the first"),
     DEA_RESULT_COLUMN(VALUE, "last", "last", .meaning = "farthest of the last"),
@@ -855,24 +850,12 @@ static dea_status add_voltages(struct dea_context *ctx, const struct dea_curve *
   return add_in_time(ctx, panel, curve, "voltage_V", 1e-3, &look);
 }
 
-/* First curve in time of the result, or NULL. */
-static const struct dea_curve *first_curve(const struct dea_result *result)
-{
-  for (size_t i = 0; i < result->curve_count; i++) {
-    const struct dea_curve *curve = &result->curves[i];
-    if (strcmp(curve->kind, "transient") == 0 && curve->count > 1) {
-      return curve;
-    }
-  }
-  return NULL;
-}
-
 /* Whether the supply plays anything: of channels with sources of their own alone it is at 0 V, and
  * the figures of channels show what there is. */
 static bool supplied(const struct dea_curve *curve)
 {
   bool any = false;
-  for (size_t i = 0; curve != NULL && i < curve->count; i++) {
+  for (size_t i = 0; curve != NULL && curve->count > 1 && i < curve->count; i++) {
     any = any || curve->points[i].source_voltage_V != 0; // NAN: not known to be at 0 V
   }
   return any;
@@ -881,7 +864,7 @@ static bool supplied(const struct dea_curve *curve)
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
                         struct dea_plot *plot)
 {
-  const struct dea_curve *curve = first_curve(result);
+  const struct dea_curve *curve = dea_study_first_curve(result, study_name);
   if (!supplied(curve)) {
     return DEA_OK;
   }
@@ -913,7 +896,7 @@ static dea_status build_one(struct dea_context *ctx, const struct dea_result *re
   struct dea_panel *panel = &plot->panels[0];
   const bool force = strcmp(plot->name, "history_force") == 0;
   const int column = dea_point_column_find(force ? "force_N" : "current_A");
-  if (!force && !supplied(first_curve(result))) {
+  if (!force && !supplied(dea_study_first_curve(result, study_name))) {
     return DEA_OK;
   }
   const struct dea_column *shown = &dea_point_columns[column];
@@ -975,5 +958,5 @@ const struct dea_study dea_study_transient = {
     .run = run,
     .tables = tables,
     .figures = figures,
-    .figure_count = sizeof figures / sizeof figures[0],
+    .figure_count = DEA_COUNT(figures),
 };

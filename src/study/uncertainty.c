@@ -18,8 +18,9 @@
 #include "base/yaml_write.h"
 #include "identify/fit_head.h"
 #include "result/observation.h"
+#include "study/device_param.h"
 #include "study/numbers.h"
-#include "study/rerun.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -31,7 +32,7 @@ static const char study_name[] = "uncertainty";
 
 /* Studies whose curves get a band; their points stand at the same places whatever the device. */
 static const char *const kinds[] = {"sweep", "force", "loading"};
-enum { KINDS = sizeof kinds / sizeof kinds[0] };
+enum { KINDS = DEA_COUNT(kinds) };
 
 // Keys -------------------------------------------------------------------------------------------
 
@@ -82,7 +83,7 @@ static const struct dea_record record = {
     study_name,
     "study of what uncertain numbers do to the curves, made of plane models where some are known, "
     "of 3d when this section is there ({})",
-    fields, sizeof fields / sizeof fields[0]};
+    fields, DEA_COUNT(fields)};
 
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_settings *given)
@@ -103,9 +104,7 @@ static const struct dea_design_section section = {
 
 struct work {
   struct dea_context *ctx;
-  const struct dea_model_type *type;
-  const struct dea_rerun *rerun;
-  struct dea_result *result;
+  struct dea_study_job job;
   struct dea_design_bytes file; // the design as it was read, with what --set changed
   struct dea_text text;         // behind it
   struct dea_device_param params[PARAMS_MAX];
@@ -120,11 +119,11 @@ struct work {
 
 static dea_status add_given(struct work *w, const struct given *given, bool *good)
 {
-  const struct dea_device_param_source source = {.design = w->result->design,
-                                                 .device = w->result->device};
+  const struct dea_device_param_source source = {.design = w->job.result->design,
+                                                 .device = w->job.result->device};
   struct dea_device_param *param = &w->params[w->count];
   double std;
-  DEA_TRY(w->ctx, w->rerun->find(w->ctx, &source, &given->name, param, good));
+  DEA_TRY(w->ctx, dea_device_param_find(w->ctx, &source, &given->name, param, good));
   if (!*good) {
     return DEA_OK;
   }
@@ -133,7 +132,7 @@ static dea_status add_given(struct work *w, const struct given *given, bool *goo
     return dea_finding_add(w->ctx, DEA_ERROR, given->name.location,
                            "the design has no single value of %.60s", given->name.text);
   }
-  DEA_TRY(w->ctx, w->rerun->read_std(w->ctx, param, &given->std, &std, good));
+  DEA_TRY(w->ctx, dea_device_param_std(w->ctx, param, &given->std, &std, good));
   if (!*good) {
     return DEA_OK;
   }
@@ -159,14 +158,14 @@ static bool is_number(const struct dea_device_param *param, const struct dea_des
 
 static const struct dea_material *material_of(const struct work *w, size_t j)
 {
-  return dea_material_of(w->result->device, w->params[j].material);
+  return dea_material_of(w->job.result->device, w->params[j].material);
 }
 
 /* Plies of the same material deviate alike. Returns whether there is such a one. */
 static bool tie(struct laws *laws, size_t i, const struct dea_device_param *param)
 {
   struct work *w = laws->w;
-  const char *name = dea_material_of(w->result->device, param->material)->name;
+  const char *name = dea_material_of(w->job.result->device, param->material)->name;
   for (size_t j = laws->first; j < w->count; j++) {
     struct dea_device_param *other = &w->params[j];
     if (laws->of[j] == i && other->designed == param->designed && name != NULL &&
@@ -183,7 +182,7 @@ static bool tie(struct laws *laws, size_t i, const struct dea_device_param *para
 static void add_law(struct laws *laws, const struct dea_design_number *number)
 {
   struct work *w = laws->w;
-  const struct dea_material *material = dea_material_of(w->result->device, number->item);
+  const struct dea_material *material = dea_material_of(w->job.result->device, number->item);
   const size_t at = offsetof(struct dea_material, param);
   const size_t i = (number->offset - at) / sizeof(double); // of one before it: no parameter
   bool wanted = material->law != NULL && number->offset >= at && i < material->law->param_count &&
@@ -220,8 +219,8 @@ static dea_status add_laws(struct work *w)
   struct dea_design_number *numbers = dea_alloc(w->ctx, DEA_NUMBERS_MAX, sizeof *numbers);
   size_t count;
   DEA_TRY_MEMORY(numbers != NULL);
-  const dea_status status =
-      dea_design_numbers(w->ctx, w->result->design, w->result->device, NAN, true, numbers, &count);
+  const dea_status status = dea_design_numbers(w->ctx, w->job.result->design, w->job.result->device,
+                                               NAN, true, numbers, &count);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     if (numbers[i].of == DEA_NUMBER_OF_MATERIAL) {
       add_law(&laws, &numbers[i]);
@@ -269,25 +268,40 @@ static dea_status find_params(struct work *w, const struct settings *settings)
 
 // Other values ------------------------------------------------------------------------------------
 
-/* The studies that have a band, of the device with p; *out: NULL where it cannot be built. */
+/* The studies that have a band, of the device with p; *out: NULL where it cannot be built. What
+ * there is of curves whose study failed counts. */
 static dea_status run_changed(struct work *w, const double *p, struct dea_result **out)
 {
   const char *names[KINDS];
   size_t count = 0;
   for (size_t k = 0; k < KINDS; k++) {
-    const struct dea_curve *curve = dea_result_find(w->result, w->type->name, kinds[k]);
+    const struct dea_curve *curve = dea_result_find(w->job.result, w->job.type->name, kinds[k]);
     if (curve != NULL && curve->count > 0) {
       names[count++] = kinds[k];
     }
   }
-  return w->rerun->run(w->ctx, w->type, &w->file, w->params, w->count, p, names, count, out);
+  struct dea_design *design;
+  struct dea_device *device;
+  *out = NULL;
+  dea_status status =
+      dea_device_params_build(w->ctx, &w->file, w->params, w->count, p, &design, &device);
+  status = status == DEA_OK ? dea_result_create(w->ctx, design, device, out) : status;
+  if (status == DEA_OK) {
+    (*out)->surface_bytes_max = 0; // nobody looks at them
+    status = w->job.services.run(w->ctx, w->job.type, names, count, *out);
+  }
+  if (*out != NULL) {
+    (*out)->design = NULL; // both end here
+    (*out)->device = NULL;
+  }
+  dea_device_destroy(w->ctx, device);
+  dea_design_destroy(w->ctx, design);
+  return status == DEA_E_TOOL ? status : dea_forgive(w->ctx, status);
 }
 
 static dea_status vary(struct work *w)
 {
-  const double least = w->type->load != NULL ? 5e-3 : 1e-3; // of the value
-  char what[DEA_NAME_SIZE + 16];
-  snprintf(what, sizeof what, "%s uncertainty", w->type->name);
+  const double least = w->job.type->load != NULL ? 5e-3 : 1e-3; // of the value
   const size_t errors = dea_finding_trial_begin(w->ctx);
   dea_status status = DEA_OK;
   for (size_t j = 0; j < w->count && status == DEA_OK; j++) {
@@ -298,7 +312,7 @@ static dea_status vary(struct work *w)
     status = run_changed(w, p, &w->plus[j]);
     p[j] = w->value[j] - w->step[j];
     status = status == DEA_OK ? run_changed(w, p, &w->minus[j]) : status;
-    dea_progress(w->ctx, what, j + 1, w->count);
+    dea_study_progress(w->ctx, &w->job, study_name, j + 1, w->count);
   }
   dea_finding_trial_end(w->ctx, errors);
   return status;
@@ -324,7 +338,7 @@ static bool is_answer(const struct dea_context *ctx, int column)
   if (column >= DEA_LOAD_POINT_COLUMNS) { // of monitors, without errors
     return dea_observed_is(c, NULL) && !dea_observed_is(c, "voltage_V");
   }
-  for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+  for (size_t k = 0; k < DEA_COUNT(keys); k++) {
     if (strcmp(c->key, keys[k]) == 0) {
       return false;
     }
@@ -338,7 +352,7 @@ static const struct dea_load_point *varied_point(const struct work *w,
                                                  const struct dea_curve *curve, size_t i)
 {
   const struct dea_curve *other =
-      result != NULL ? dea_result_find(result, w->type->name, curve->kind) : NULL;
+      result != NULL ? dea_result_find(result, w->job.type->name, curve->kind) : NULL;
   return other == NULL || i >= other->count || dea_load_point_is_one_of_several(&other->points[i])
              ? NULL
              : &other->points[i];
@@ -398,9 +412,9 @@ static dea_status fill_curve(struct work *w, struct dea_curve *curve)
 static dea_status fill_bands(struct work *w)
 {
   for (size_t k = 0; k < KINDS; k++) {
-    const struct dea_curve *curve = dea_result_find(w->result, w->type->name, kinds[k]);
+    const struct dea_curve *curve = dea_result_find(w->job.result, w->job.type->name, kinds[k]);
     if (curve != NULL && curve->count > 0) {
-      DEA_TRY(w->ctx, fill_curve(w, &w->result->curves[curve - w->result->curves]));
+      DEA_TRY(w->ctx, fill_curve(w, &w->job.result->curves[curve - w->job.result->curves]));
     }
   }
   return DEA_OK;
@@ -410,7 +424,7 @@ static dea_status fill_bands(struct work *w)
  * state; NAN: there is none. */
 static double ends_at(const struct work *w, const struct dea_result *varied)
 {
-  const struct dea_curve *sweep = dea_result_find(w->result, w->type->name, "sweep");
+  const struct dea_curve *sweep = dea_result_find(w->job.result, w->job.type->name, "sweep");
   for (size_t i = 0; sweep != NULL && i < sweep->count; i++) {
     if (!dea_load_point_is_one_of_several(&sweep->points[i]) &&
         varied_point(w, varied, sweep, i) == NULL) {
@@ -430,11 +444,12 @@ static dea_status report_sides(struct work *w)
       if (isnan(at_V)) {
         continue;
       }
-      w->rerun->show(&w->params[j], w->value[j] + side * w->step[j], text);
-      DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_WARNING, (struct dea_location){0},
-                                      "model %s: from %.6g kV on a film with %s %s has no such "
-                                      "state; bands there are those of the other side",
-                                      w->type->name, 1e-3 * at_V, w->params[j].param.name, text));
+      dea_device_param_show(&w->params[j], w->value[j] + side * w->step[j], text);
+      DEA_TRY(w->ctx,
+              dea_finding_add(w->ctx, DEA_WARNING, (struct dea_location){0},
+                              "model %s: from %.6g kV on a film with %s %s has no such "
+                              "state; bands there are those of the other side",
+                              w->job.type->name, 1e-3 * at_V, w->params[j].param.name, text));
     }
   }
   return DEA_OK;
@@ -447,7 +462,7 @@ static const struct dea_result_column effect_columns[] = {
     DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity",
                       .meaning =
                           "that is changed: of the sweep; the force at the end of its study"),
-    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the change"),
+    DEA_KV("voltage_V", "V", "voltage of the change"),
     DEA_TEXT_COLUMN("parameter", "uncertain",
                     "number of the design or of a film's law; all: of all together"),
     DEA_TEXT_COLUMN("std", "std", "its standard uncertainty"),
@@ -497,12 +512,13 @@ static dea_status add_table(struct work *w)
   static const char *const keys[] = {"electrode_stretch", "fibre_tip_z_m", "centre_z_m",
                                      "true_field_V_per_m"};
   enum { HEADLINES_MAX = 16 };
-  const struct dea_curve *sweep = dea_result_find(w->result, w->type->name, "sweep");
-  const struct dea_curve *force = dea_result_find(w->result, w->type->name, "force");
+  const struct dea_curve *sweep = dea_result_find(w->job.result, w->job.type->name, "sweep");
+  const struct dea_curve *force = dea_result_find(w->job.result, w->job.type->name, "force");
   struct dea_result_table *table;
   int columns[HEADLINES_MAX];
-  DEA_TRY(w->ctx, dea_result_add_table(w->ctx, w->result, &effect_table, w->type->name, 0, &table));
-  for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+  DEA_TRY(w->ctx,
+          dea_result_add_table(w->ctx, w->job.result, &effect_table, w->job.type->name, 0, &table));
+  for (size_t k = 0; k < DEA_COUNT(keys); k++) {
     DEA_TRY(w->ctx, add_effects(w, sweep, dea_point_column_find(keys[k]), table));
   }
   const size_t count =
@@ -510,7 +526,7 @@ static dea_status add_table(struct work *w)
   for (size_t k = 0; k < count; k++) {
     DEA_TRY(w->ctx, add_effects(w, sweep, columns[k], table));
   }
-  force = force != NULL ? force : dea_result_find(w->result, w->type->name, "loading");
+  force = force != NULL ? force : dea_result_find(w->job.result, w->job.type->name, "loading");
   return add_effects(w, force, dea_point_column_find("force_N"), table);
 }
 
@@ -519,7 +535,7 @@ static dea_status add_table(struct work *w)
 static dea_status find_all(struct work *w, const struct dea_settings *given)
 {
   struct dea_context *ctx = w->ctx;
-  if (w->rerun == NULL) { // of who runs single studies by hand
+  if (w->job.services.run == NULL) { // of who runs single studies by hand
     return DEA_OK;
   }
   DEA_TRY(ctx, find_params(w, given->values));
@@ -528,17 +544,17 @@ static dea_status find_all(struct work *w, const struct dea_settings *given)
                                             "nothing is known to be uncertain: no bands")
                           : DEA_OK;
   }
-  if (w->type->load != NULL && !given->written) {
+  if (w->job.type->load != NULL && !given->written) {
     return dea_finding_add(
         ctx, DEA_NOTE, (struct dea_location){0},
         "the films' laws have uncertainties: compute.uncertainty ({}) makes bands "
         "of model %s too, by two runs more for each of %zu",
-        w->type->name, w->count);
+        w->job.type->name, w->count);
   }
-  dea_yaml_write(dea_yaml_root(w->result->design->document), &w->text);
+  dea_yaml_write(dea_yaml_root(w->job.result->design->document), &w->text);
   DEA_TRY_MEMORY(!w->text.failed);
   w->file =
-      (struct dea_design_bytes){w->result->design->file, dea_text_get(&w->text), w->text.length};
+      (struct dea_design_bytes){w->job.result->design, dea_text_get(&w->text), w->text.length};
   DEA_TRY(ctx, vary(w));
   DEA_TRY(ctx, fill_bands(w));
   DEA_TRY(ctx, report_sides(w));
@@ -546,7 +562,7 @@ static dea_status find_all(struct work *w, const struct dea_settings *given)
 }
 
 dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_design *design,
-                                 const struct dea_device *device, const struct dea_rerun *rerun)
+                                 const struct dea_device *device)
 {
   const struct dea_settings *given = dea_design_settings(design, &section);
   if (given == NULL || !given->written) {
@@ -555,22 +571,18 @@ dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_desig
   struct work *w = dea_alloc(ctx, 1, sizeof *w);
   DEA_TRY_MEMORY(w != NULL);
   struct dea_result nothing = {.design = design, .device = device};
-  *w = (struct work){.ctx = ctx, .rerun = rerun, .result = &nothing};
+  *w = (struct work){.ctx = ctx, .job = {.result = &nothing}};
   dea_status status = find_params(w, given->values);
   dea_free(ctx, w);
   return status;
 }
 
-static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, const struct dea_study_services *services,
-                      struct dea_result *result)
+static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 {
-  (void)model; // none: each device has its own
   struct work *w = dea_alloc(ctx, 1, sizeof *w);
   DEA_TRY_MEMORY(w != NULL);
-  *w = (struct work){
-      .ctx = ctx, .type = type, .rerun = services->rerun, .result = result, .text = {.ctx = ctx}};
-  dea_status status = find_all(w, dea_design_settings(result->design, &section));
+  *w = (struct work){.ctx = ctx, .job = *job, .text = {.ctx = ctx}};
+  dea_status status = find_all(w, dea_design_settings(job->result->design, &section));
   for (size_t j = 0; j < w->count; j++) {
     dea_result_destroy(ctx, w->plus[j]);
     dea_result_destroy(ctx, w->minus[j]);
@@ -588,4 +600,4 @@ static bool asked(const struct dea_design *design)
 }
 
 const struct dea_study dea_study_uncertainty = {
-    .name = study_name, .keys = &section, .asked = asked, .own_models = true, .run_with = run};
+    .name = study_name, .keys = &section, .asked = asked, .own_models = true, .run = run};

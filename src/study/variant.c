@@ -1,50 +1,55 @@
 #include "study/variant.h"
 
 #include "base/clock.h"
-#include "study/study.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static void set_size(const struct dea_model_type *type, const struct dea_model *model,
-                     double refinement, struct dea_variant *variant)
+void dea_variant_set_size(const struct dea_study_job *job, double refinement,
+                          struct dea_variant *variant)
 {
-  if (type->size != NULL) {
-    type->size(model, &variant->size);
+  if (job->type->size != NULL) {
+    job->type->size(job->model, &variant->size);
     variant->refinement = refinement;
   }
 }
 
-/* All of one model. After a failure there are points, but no profile: the model may be anywhere. */
-static dea_status use_model(struct dea_context *ctx, const struct dea_model_type *type,
-                            struct dea_model *model, const struct dea_variant_run *run,
-                            struct dea_variant *variant)
+dea_status dea_variant_take_profile(struct dea_context *ctx, const struct dea_study_job *job,
+                                    struct dea_variant *variant)
 {
+  const struct dea_curve *curve = &variant->curve;
   struct dea_profile profile;
-  set_size(type, model, run->settings.refinement, variant);
-  DEA_TRY(ctx, dea_study_add_points(ctx, type, model, run->device, run->voltages_V,
-                                    run->voltage_count, &variant->curve));
-  if (type->profile != NULL && variant->curve.count > 0) {
-    DEA_TRY(ctx, dea_model_profile(ctx, type, model, &profile));
-    DEA_TRY(ctx, dea_variant_set_profile(ctx, variant,
-                                         variant->curve.points[variant->curve.count - 1].voltage_V,
-                                         &profile));
+  if (job->type->profile == NULL || curve->count == 0) {
+    return DEA_OK;
   }
-  return DEA_OK;
+  DEA_TRY(ctx, job->type->profile(ctx, job->model, &profile));
+  return dea_variant_set_profile(ctx, variant, curve->points[curve->count - 1].voltage_V, &profile);
 }
 
-dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type *type,
-                           const struct dea_variant_run *run, struct dea_result *result)
+/* All of one model. After a failure there are points, but no profile: the model may be anywhere. */
+static dea_status use_model(struct dea_context *ctx, const struct dea_study_job *job,
+                            const struct dea_variant_run *run, struct dea_variant *variant)
 {
+  dea_variant_set_size(job, run->settings.refinement, variant);
+  DEA_TRY(ctx, dea_study_add_points(ctx, job, run->device, run->voltages_V, run->voltage_count,
+                                    &variant->curve));
+  return DEA_CHAIN(ctx, dea_variant_take_profile(ctx, job, variant));
+}
+
+dea_status dea_variant_run(struct dea_context *ctx, const struct dea_study_job *job,
+                           const struct dea_variant_run *run)
+{
+  const struct dea_model_type *type = job->type;
+  struct dea_study_job own = *job;
   struct dea_variant *variant;
-  struct dea_model *model;
   double start_s = dea_clock_s();
-  DEA_TRY(ctx, dea_result_add_variant(ctx, result, type->name, run->study, run->name, &variant));
-  dea_status status = type->create(ctx, run->device, &run->settings, &model);
+  DEA_TRY(ctx,
+          dea_result_add_variant(ctx, job->result, type->name, run->study, run->name, &variant));
+  dea_status status = type->create(ctx, run->device, &run->settings, &own.model);
   if (status == DEA_OK) {
-    status = use_model(ctx, type, model, run, variant);
-    type->destroy(ctx, model);
+    status = use_model(ctx, &own, run, variant);
+    type->destroy(ctx, own.model);
   }
   variant->wall_s = dea_clock_s() - start_s;
   return dea_curve_end(ctx, &variant->curve, status);
@@ -62,15 +67,16 @@ static const struct dea_profile_record *last_profile(const struct dea_result *re
   return NULL;
 }
 
-dea_status dea_variant_of_sweep(struct dea_context *ctx, const struct dea_model_type *type,
-                                const struct dea_model *model, const char *study, const char *name,
-                                struct dea_result *result)
+dea_status dea_variant_of_sweep(struct dea_context *ctx, const struct dea_study_job *job,
+                                const char *study, const char *name)
 {
-  const struct dea_curve *sweep = dea_result_find(result, type->name, "sweep");
-  const struct dea_profile_record *last = last_profile(result, type->name);
+  struct dea_result *result = job->result;
+  const char *model = job->type->name;
+  const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
+  const struct dea_profile_record *last = last_profile(result, model);
   struct dea_variant *variant;
-  DEA_TRY(ctx, dea_result_add_variant(ctx, result, type->name, study, name, &variant));
-  set_size(type, model, dea_model_settings_of(result->design).refinement, variant);
+  DEA_TRY(ctx, dea_result_add_variant(ctx, result, model, study, name, &variant));
+  dea_variant_set_size(job, dea_model_settings_of(result->design).refinement, variant);
   variant->wall_s = NAN;
   for (size_t i = 0; i < sweep->count; i++) {
     DEA_TRY(ctx, dea_curve_add_point(ctx, &variant->curve, &sweep->points[i]));

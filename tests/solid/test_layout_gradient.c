@@ -98,7 +98,7 @@ static void solve(struct at *at, const struct dea_device *device, double voltage
       (at->control != NULL &&
        type->move(ctx, model, at->control, at->control_to, &point) != DEA_OK) ||
       (at->again && type->solve(ctx, model, voltage_V, &point) != DEA_OK) ||
-      dea_model_observe(ctx, type, model, &seen) != DEA_OK) {
+      type->observe(ctx, model, &seen) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   if (at->vibrates) {

@@ -161,7 +161,8 @@ static void sweep_interrupted(void)
   const struct dea_model_type type = {.name = "together", .solve = solve_together};
   struct dea_curve curve = {0};
   dea_context_set_interrupt(ctx, &interrupted);
-  dea_status status = dea_study_add_points(ctx, &type, NULL, NULL, voltages_V, 3, &curve);
+  const struct dea_study_job job = {.type = &type};
+  dea_status status = dea_study_add_points(ctx, &job, NULL, voltages_V, 3, &curve);
   if (dea_solid_rank() == 0) {
     printf("%d %zu %d\n", (int)status, curve.count, dea_interrupted(ctx));
   }

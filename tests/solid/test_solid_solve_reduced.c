@@ -100,7 +100,8 @@ static double compare_history(struct dea_model *model[2], const struct dea_time_
 static void check_source(const struct dea_reduced_order *order, const struct dea_device *device)
 {
   char command[200];
-  assert_int_equal(dea_reduced_order_write_c(ctx, order, device, "reduced_cone.c"), DEA_OK);
+  assert_int_equal(
+      dea_reduced_order_export(ctx, order, device, DEA_REDUCED_C, 0, 0, "reduced_cone.c"), DEA_OK);
   snprintf(command, sizeof command,
            "cc -std=c99 -O2 -Wall -Wextra -Werror "
            "-DDEA_REDUCED_TEST reduced_cone.c -o reduced_cone -lm && ./reduced_cone");

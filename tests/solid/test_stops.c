@@ -123,7 +123,7 @@ TEST(test_stiff_electrodes_have_a_rest)
       assert_int_equal(type->solve(ctx, model, 0, &at), DEA_OK);
       assert_true(at.stable && at.electrode_stretch < 0.31 && at.electrode_stretch > 1 / 3.3);
       if (m == 1) {
-        assert_int_equal(dea_model_profile(ctx, type, model, &profile), DEA_OK);
+        assert_int_equal(type->profile(ctx, model, &profile), DEA_OK);
         size_t edge = 31; // first sample outside the electrode
         assert_close(profile.radius_m[edge], profile.radius_m[edge - 1], 1e-12, 0);
         assert_close(profile.tension_r_N_per_m[edge], profile.tension_r_N_per_m[edge - 1], 1e-5, 0);

@@ -4,7 +4,6 @@
 #include "design_text.h"
 #include "result/richardson.h"
 #include "study/observe.h"
-#include "study/rerun.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -27,7 +26,7 @@ static struct run run_studies(const struct dea_override *overrides, size_t count
                               const char *const names[], size_t name_count)
 {
   struct run run = run_begin(cone, overrides, count);
-  const struct dea_study_services services = {.rerun = &dea_rerun_designs};
+  const struct dea_study_services services = {.run = dea_study_run};
   assert_int_equal(
       dea_study_run_with(ctx, dea_model_find("3d"), names, name_count, &services, run.result),
       DEA_OK);
@@ -136,7 +135,7 @@ TEST(test_uncertain_laws)
       (int)(plies - cone), cone, (int)(at - plies), plies, at);
   const struct dea_override written = {"compute.uncertainty", "{}"};
   struct run run = run_begin(text, &written, 1);
-  const struct dea_study_services services = {.rerun = &dea_rerun_designs};
+  const struct dea_study_services services = {.run = dea_study_run};
   assert_int_equal(dea_study_run_with(ctx, dea_model_find("3d"), names, 2, &services, run.result),
                    DEA_OK);
   const struct dea_result_table *table =

@@ -7,7 +7,7 @@
 #include "io/results_h5.h"
 #include "io/summary.h"
 #include "result/compare.h"
-#include "study/rerun.h"
+#include "study/study.h"
 
 #include "own_folder.h"
 #include "study_result.h"
@@ -21,7 +21,7 @@
            "    correlations: [0.5]\n"
 
 static const char *const both[] = {"sweep", "uncertainty"};
-static const struct dea_study_services services = {.rerun = &dea_rerun_designs};
+static const struct dea_study_services services = {.run = dea_study_run};
 static const struct dea_curve *run_sweep(const char *model)
 {
   assert_int_equal(dea_study_run_with(ctx, dea_model_find(model), both, 2, &services, result),

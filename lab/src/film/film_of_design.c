@@ -307,7 +307,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_bench_model *model,
       .rho_inf = 0.8,
   };
   DEA_TRY(ctx, m->type->solve(ctx, m->model, 0, &point));
-  DEA_TRY(ctx, dea_model_begin(ctx, m->type, m->model, &options, &point));
+  DEA_TRY(ctx, m->type->begin(ctx, m->model, &options, &point));
   DEA_TRY(ctx, read_motion(ctx, m, &point));
   *out = complete(m, &point);
   return DEA_OK;
@@ -319,7 +319,7 @@ static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model
   struct film_model *m = (struct film_model *)model;
   const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = source_V};
   struct dea_load_point point;
-  dea_status status = dea_model_advance(ctx, m->type, m->model, &step, &point, error);
+  dea_status status = m->type->advance(ctx, m->model, &step, &point, error);
   status = status == DEA_OK ? read_motion(ctx, m, &point) : status;
   if (status == DEA_OK) {
     *out = complete(m, &point);
@@ -338,7 +338,7 @@ static dea_status profile(struct dea_context *ctx, struct dea_bench_model *model
 {
   struct film_model *m = (struct film_model *)model;
   *out = (struct dea_profile){.count = 0};
-  return m->type->profile != NULL ? dea_model_profile(ctx, m->type, m->model, out) : DEA_OK;
+  return m->type->profile != NULL ? m->type->profile(ctx, m->model, out) : DEA_OK;
 }
 
 const struct dea_bench_film_type dea_film_of_design = {

@@ -122,21 +122,6 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   return DEA_OK;
 }
 
-/* Rest of a film whose electrodes have a share of their stiffness. */
-static void ramp(void *self, double share)
-{
-  struct dea_model *model = self;
-  model->disc.film.electrode_ratio = share * dea_film_electrode_ratio(&model->device);
-}
-
-static void destroy(struct dea_context *ctx, struct dea_model *model)
-{
-  if (model != NULL) {
-    dea_path_destroy(ctx, model->path);
-    dea_free(ctx, model);
-  }
-}
-
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
@@ -153,7 +138,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
       .evaluate = evaluate,
       .point = point,
       .voltage_scale_V = dea_film_voltage_scale(&model->disc.film),
-      .ramp = model->disc.film.electrode != NULL ? ramp : NULL,
+      .ramped = model->disc.film.electrode != NULL ? &model->disc.film.electrode_ratio : NULL,
       .pre_stretch = device->pre_stretch,
       .end_stretch = 10,
       .model = "axisymmetric",
@@ -186,8 +171,8 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  return DEA_CHAIN(ctx,
-                   dea_model_build(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  return DEA_CHAIN(ctx, dea_model_build(ctx, sizeof **out, device, settings, prepare,
+                                        dea_path_model_destroy, out));
 }
 
 /* Element that holds R; at the electrode edge the one outside. */
@@ -234,7 +219,7 @@ const struct dea_model_type dea_model_axisymmetric = {
     .name = "axisymmetric",
     .long_name = "axisymmetric disc in a ring (exact)",
     .create = create,
-    .destroy = destroy,
+    .destroy = dea_path_model_destroy,
     .check = check,
     .solve = dea_path_solve,
     .limit = dea_path_limit,

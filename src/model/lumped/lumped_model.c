@@ -99,21 +99,6 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   return fill_point(model, &model->lumped, u[0], voltage_V, out);
 }
 
-/* Rest of a film whose electrodes have a share of their stiffness. */
-static void ramp(void *self, double share)
-{
-  struct dea_model *model = self;
-  model->lumped.film.electrode_ratio = share * dea_film_electrode_ratio(&model->device);
-}
-
-static void destroy(struct dea_context *ctx, struct dea_model *model)
-{
-  if (model != NULL) {
-    dea_path_destroy(ctx, model->path);
-    dea_free(ctx, model);
-  }
-}
-
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
@@ -147,7 +132,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
       .evaluate = evaluate,
       .point = point,
       .voltage_scale_V = dea_film_voltage_scale(&model->lumped.film),
-      .ramp = model->lumped.film.electrode != NULL ? ramp : NULL,
+      .ramped = model->lumped.film.electrode != NULL ? &model->lumped.film.electrode_ratio : NULL,
       .pre_stretch = device->pre_stretch,
       .end_stretch = fmin(10, 1 / device->coverage),
       .model = "lumped",
@@ -159,8 +144,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  return DEA_CHAIN(ctx,
-                   dea_model_build(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  return DEA_CHAIN(ctx, dea_model_build(ctx, sizeof **out, device, settings, prepare,
+                                        dea_path_model_destroy, out));
 }
 
 static dea_status hold(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
@@ -252,7 +237,7 @@ const struct dea_model_type dea_model_lumped = {
     .name = "lumped",
     .long_name = "lumped (paper eqs 15-20)",
     .create = create,
-    .destroy = destroy,
+    .destroy = dea_path_model_destroy,
     .solve = dea_path_solve,
     .limit = dea_path_limit,
     .passed = dea_path_passed,

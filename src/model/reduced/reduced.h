@@ -39,10 +39,9 @@ struct dea_reduced_order {
 dea_status dea_reduced_order_build(struct dea_context *ctx, const struct dea_device *device,
                                    const struct dea_model_settings *settings,
                                    struct dea_reduced_order **out);
-/* Sets the hash of the device. */
-dea_status dea_reduced_order_mark(struct dea_context *ctx, struct dea_reduced_order *order,
-                                  const struct dea_device *device,
-                                  const struct dea_model_settings *settings);
+/* Hash of all values of the design that an equilibrium at any voltage depends on. */
+dea_status dea_reduced_hash(struct dea_context *ctx, const struct dea_device *device,
+                            const struct dea_model_settings *settings, char out[65]);
 /* As a file. read: DEA_E_DESIGN where it is of another device. */
 dea_status dea_reduced_order_write(struct dea_context *ctx, const struct dea_reduced_order *order,
                                    const struct dea_device *device, const char *path);
@@ -50,32 +49,38 @@ dea_status dea_reduced_order_read(struct dea_context *ctx, const char *path,
                                   const struct dea_device *device,
                                   const struct dea_model_settings *settings,
                                   struct dea_reduced_order **out);
-/* The two files of reduced_core.[ch] and one with the device's numbers, in C99. */
-dea_status dea_reduced_order_write_c(struct dea_context *ctx, const struct dea_reduced_order *order,
-                                     const struct dea_device *device, const char *path);
-/* The same as text. */
-void dea_reduced_order_c(const struct dea_reduced_order *order, const struct dea_device *device,
-                         struct dea_text *out);
-/* As a functional mock-up unit of FMI 3.0 (co-simulation), with a library where cc is. */
-dea_status dea_reduced_order_write_fmu(struct dea_context *ctx,
-                                       const struct dea_reduced_order *order,
-                                       const struct dea_device *device, const char *path);
-/* As a linear system at a voltage without a force, A, B, C, D in JSON; damping_ratio: of each mode,
- * of the critical one. */
-dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,
-                                               const struct dea_reduced_order *order,
-                                               double voltage_V, double damping_ratio,
-                                               const char *path);
-/* As a subcircuit of ngspice at any voltage of the range, with the dashpots that have that ratio at
- * voltage_V. */
-dea_status dea_reduced_order_write_spice(struct dea_context *ctx,
-                                         const struct dea_reduced_order *order, double voltage_V,
-                                         double damping_ratio, const char *path);
-/* As a joint with an actuator of MuJoCo, linear about a voltage. */
-dea_status dea_reduced_order_write_mujoco(struct dea_context *ctx,
-                                          const struct dea_reduced_order *order,
-                                          const struct dea_device *device, double voltage_V,
-                                          double damping_ratio, const char *path);
+
+/* Files for other programs: the two files of reduced_core.[ch] and the device's numbers in C99; a
+ * functional mock-up unit of FMI 3.0 (co-simulation), with a library where cc is; and about a
+ * voltage without a force a linear system (A, B, C, D in JSON), a subcircuit of ngspice at any
+ * voltage of the range, a joint with an actuator of MuJoCo. */
+enum dea_reduced_format {
+  DEA_REDUCED_C,
+  DEA_REDUCED_FMU,
+  DEA_REDUCED_STATE_SPACE,
+  DEA_REDUCED_SPICE,
+  DEA_REDUCED_MUJOCO,
+  DEA_REDUCED_FORMATS
+};
+/* damping_ratio: of each mode at the voltage, of the critical one; C and FMU look at neither. */
+dea_status dea_reduced_order_export(struct dea_context *ctx, const struct dea_reduced_order *order,
+                                    const struct dea_device *device, enum dea_reduced_format format,
+                                    double voltage_V, double damping_ratio, const char *path);
+
+/* What is exported. */
+struct dea_reduced_export {
+  const struct dea_reduced_order *order;
+  char name[120];
+  struct dea_reduced_point at; // of a linear one, at the voltage
+  double damping_ratio;
+};
+/* The formats as text, in the C locale. */
+dea_status dea_reduced_add_c(const struct dea_reduced_export *e, struct dea_text *out);
+dea_status dea_reduced_add_state_space(const struct dea_reduced_export *e, struct dea_text *out);
+dea_status dea_reduced_add_spice(const struct dea_reduced_export *e, struct dea_text *out);
+dea_status dea_reduced_add_mujoco(const struct dea_reduced_export *e, struct dea_text *out);
+dea_status dea_reduced_write_fmu(struct dea_context *ctx, const struct dea_reduced_export *e,
+                                 const char *path);
 /* Whether the coordinate is a rotation (rad, N m) and no displacement (m, N). */
 bool dea_reduced_order_turns(const struct dea_reduced_order *order);
 void dea_reduced_order_destroy(struct dea_context *ctx, struct dea_reduced_order *order);

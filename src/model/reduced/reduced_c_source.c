@@ -1,9 +1,7 @@
 /* A reduced-order model as one file in C99: reduced_core.[ch], the device's numbers, and a test of
  * them. */
 #include "base/assets.h"
-#include "base/text.h"
 #include "base/version.h"
-#include "base/write_file.h"
 #include "model/reduced/reduced.h"
 
 #include <math.h>
@@ -132,30 +130,17 @@ static void add_points(struct dea_text *out, const struct dea_reduced_order *o)
   dea_text_add(out, "};\n#endif\n\n");
 }
 
-void dea_reduced_order_c(const struct dea_reduced_order *order, const struct dea_device *device,
-                         struct dea_text *out)
+dea_status dea_reduced_add_c(const struct dea_reduced_export *e, struct dea_text *out)
 {
+  const struct dea_reduced_order *order = e->order;
   const bool turns = dea_reduced_order_turns(order);
-  char name[120];
-  dea_reduced_order_name(order, device, name, sizeof name);
-  void *locale = dea_c_locale_enter();
-  dea_text_add(out, head, name, DEA_VERSION, order->force[0], order->force[1], turns ? "N m" : "N",
-               order->voltage_V[0], order->voltage_V[1], 100 * order->error, order->stroke,
-               turns ? "rad" : "m", 100 * order->charge_error);
+  dea_text_add(out, head, e->name, DEA_VERSION, order->force[0], order->force[1],
+               turns ? "N m" : "N", order->voltage_V[0], order->voltage_V[1], 100 * order->error,
+               order->stroke, turns ? "rad" : "m", 100 * order->charge_error);
   add_core(out);
   dea_text_add(out, "\n");
   add_device(out, &order->core);
   add_points(out, order);
   dea_text_add(out, "%s", test);
-  dea_c_locale_leave(locale);
-}
-
-dea_status dea_reduced_order_write_c(struct dea_context *ctx, const struct dea_reduced_order *order,
-                                     const struct dea_device *device, const char *path)
-{
-  struct dea_text text = {.ctx = ctx};
-  dea_reduced_order_c(order, device, &text);
-  dea_status status = dea_text_write_path(ctx, &text, path);
-  dea_text_free(&text);
-  return DEA_CHAIN(ctx, status);
+  return DEA_OK;
 }

@@ -19,9 +19,8 @@ static const char *const motions[] = {"x",         "y",         "z",           "
                                       "stretch_x", "stretch_y", "area_stretch"};
 enum { MOTIONS = sizeof motions / sizeof motions[0] };
 
-/* Hash of all values of the design that an equilibrium at any voltage depends on. */
-static dea_status hash_device(struct dea_context *ctx, const struct dea_device *device,
-                              const struct dea_model_settings *settings, char out[65])
+dea_status dea_reduced_hash(struct dea_context *ctx, const struct dea_device *device,
+                            const struct dea_model_settings *settings, char out[65])
 {
   struct dea_text text = {.ctx = ctx};
   out[0] = '\0';
@@ -41,13 +40,6 @@ static dea_status hash_device(struct dea_context *ctx, const struct dea_device *
   const bool failed = text.failed;
   dea_text_free(&text);
   return failed ? DEA_E_MEMORY : DEA_OK;
-}
-
-dea_status dea_reduced_order_mark(struct dea_context *ctx, struct dea_reduced_order *order,
-                                  const struct dea_device *device,
-                                  const struct dea_model_settings *settings)
-{
-  return DEA_CHAIN(ctx, hash_device(ctx, device, settings, order->device));
 }
 
 // Writing -----------------------------------------------------------------------------------------
@@ -291,7 +283,7 @@ static dea_status check_device(struct dea_context *ctx, const char *path, const 
 {
   const char *of = json_string_value(json_object_get(root, "device"));
   char hash[65];
-  DEA_TRY(ctx, hash_device(ctx, device, settings, hash));
+  DEA_TRY(ctx, dea_reduced_hash(ctx, device, settings, hash));
   return of == NULL || hash[0] == '\0' || strcmp(of, hash) == 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_DESIGN,

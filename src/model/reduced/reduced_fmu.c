@@ -180,20 +180,18 @@ static dea_status pack(struct dea_context *ctx, const char *folder, const char *
   return status;
 }
 
-dea_status dea_reduced_order_write_fmu(struct dea_context *ctx,
-                                       const struct dea_reduced_order *order,
-                                       const struct dea_device *device, const char *path)
+dea_status dea_reduced_write_fmu(struct dea_context *ctx, const struct dea_reduced_export *e,
+                                 const char *path)
 {
   struct dea_text xml = {.ctx = ctx}, source = {.ctx = ctx};
-  char folder[DEA_TEMPORARY_SIZE], name[120];
-  dea_reduced_order_name(order, device, name, sizeof name);
-  dea_reduced_order_c(order, device, &source);
+  char folder[DEA_TEMPORARY_SIZE];
   void *locale = dea_c_locale_enter();
-  describe(&xml, order, name);
+  dea_reduced_add_c(e, &source);
+  describe(&xml, e->order, e->name);
   dea_text_add(&source,
                "\nstatic const char fmi3_token[] = \"%s\";\n"
                "static const double fmi3_longest_step = %.17g;\n%s",
-               order->device, longest_step(&order->core), dea_asset_fmi3);
+               e->order->device, longest_step(&e->order->core), dea_asset_fmi3);
   dea_c_locale_leave(locale);
   dea_status status =
       source.failed || xml.failed ? DEA_E_MEMORY : dea_folder_create_temporary(ctx, "fmu", folder);
@@ -203,5 +201,5 @@ dea_status dea_reduced_order_write_fmu(struct dea_context *ctx,
   }
   dea_text_free(&xml);
   dea_text_free(&source);
-  return DEA_CHAIN(ctx, status);
+  return status;
 }

@@ -79,7 +79,7 @@ static dea_status read_coordinate(struct making *m, const struct dea_load_point 
     *out = dea_point_get(point, m->coordinate.column);
     return DEA_OK;
   }
-  DEA_TRY(m->ctx, dea_model_observe(m->ctx, m->type, m->model, &seen));
+  DEA_TRY(m->ctx, m->type->observe(m->ctx, m->model, &seen));
   const double *values = seen.monitor[m->coordinate.body];
   if (m->coordinate.component < 0) { // at the highest voltage
     m->coordinate.component = (int)dea_observed_main(values);
@@ -94,11 +94,6 @@ static dea_status read_coordinate(struct making *m, const struct dea_load_point 
 static bool is_doubtful(const struct dea_load_point *point)
 {
   return (dea_load_point_flags(point) & ~(1u << DEA_FLAG_PREVIEW | 1u << DEA_FLAG_BREAKDOWN)) != 0;
-}
-
-static bool ends(dea_status status)
-{
-  return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED;
 }
 
 static dea_status refuse(struct making *m, const char *what)
@@ -130,7 +125,7 @@ static dea_status find_range(struct making *m)
   for (size_t i = 0; i <= steps && status == DEA_OK; i++) {
     const double V = m->highest_V * (double)i / (double)steps;
     status = m->type->solve(m->ctx, m->model, V, &point);
-    if (ends(status)) {
+    if (dea_status_ends(status)) {
       return dea_fail_chain(m->ctx, status, __func__, __FILE__, __LINE__);
     }
     if (status != DEA_OK || is_doubtful(&point)) {
@@ -180,7 +175,7 @@ static dea_status add_sample(struct making *m, size_t force, size_t voltage, dou
   }
   DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate, force == middle ? with : 0,
                                       &out->at));
-  DEA_TRY(m->ctx, dea_model_observe(m->ctx, m->type, m->model, &seen));
+  DEA_TRY(m->ctx, m->type->observe(m->ctx, m->model, &seen));
   for (size_t i = 0; i < count; i++) {
     memcpy(m->monitors[n * count + i], seen.monitor[i], sizeof *m->monitors);
   }
@@ -271,7 +266,7 @@ static dea_status compute_samples(struct making *m, double error[2])
   enum { TRIALS = 8, OF_FORCE = 4 };
   for (int trial = 0; trial < TRIALS; trial++) {
     const dea_status status = sample_voltages(m, error);
-    if (status == DEA_OK || ends(status) || m->settings.reduced.force > 0) {
+    if (status == DEA_OK || dea_status_ends(status) || m->settings.reduced.force > 0) {
       return DEA_CHAIN(m->ctx, status);
     }
     if (trial + 1 < TRIALS) {
@@ -515,7 +510,7 @@ static dea_status build(struct making *m, struct dea_reduced_order *out)
   out->error = error[0];
   out->charge_error = error[1];
   DEA_TRY(m->ctx, fit(m, out));
-  return DEA_CHAIN(m->ctx, dea_reduced_order_mark(m->ctx, out, m->device, &m->settings));
+  return DEA_CHAIN(m->ctx, dea_reduced_hash(m->ctx, m->device, &m->settings, out->device));
 }
 
 dea_status dea_reduced_order_build(struct dea_context *ctx, const struct dea_device *device,

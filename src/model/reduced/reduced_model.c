@@ -233,38 +233,6 @@ static dea_status errors(struct dea_context *ctx, struct dea_model *model, doubl
   return DEA_OK;
 }
 
-static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
-                             const struct dea_control *coordinate, int with,
-                             struct dea_compliance *out)
-{
-  const struct dea_reduced *core = &model->order->core;
-  const struct dea_control *own = &model->order->coordinate;
-  const struct dea_reduced_point *at = &model->trial.film.at;
-  (void)with;
-  if (coordinate->column != own->column || coordinate->body != own->body) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the reduced-order model has another coordinate");
-  }
-  *out = (struct dea_compliance){.value = at->q,
-                                 .force = at->force,
-                                 .by_force = at->by_force,
-                                 .by_voltage = at->by_voltage,
-                                 .charge_C = at->charge_C,
-                                 .charge_by_force = at->by_voltage,
-                                 .charge_by_voltage = at->charge_by_voltage,
-                                 .fast_by_force = NAN,
-                                 .fast_by_voltage = NAN};
-  for (int i = 0; i < DEA_COMPLIANCE_MODES; i++) {
-    const struct dea_reduced_mode *mode = &core->modes[i];
-    out->modes[i] = (struct dea_compliance_mode){NAN, NAN, NAN};
-    if (i < core->small_count) {
-      out->modes[i] = (struct dea_compliance_mode){
-          sqrt(1 / (at->by_force * mass_at(core, mode, at->q))) / (2 * acos(-1.0)), mode->share,
-          mode->voltage_share};
-    }
-  }
-  return DEA_OK;
-}
-
 // Small motions -----------------------------------------------------------------------------------
 
 /* dq/dV at a frequency: (dq/dV)_0 [K/k(w) + sum s (K/(k(w) + i w c - w^2 m) - K/k(w))] with the
@@ -525,7 +493,6 @@ const struct dea_model_type dea_model_reduced = {
     .solve = solve,
     .observe = observe,
     .errors = errors,
-    .compliance = compliance,
     .hold = hold,
     .respond = respond,
     .answers = answers,

@@ -3,9 +3,7 @@
  *   force = gain u - K (q - q_0) - c v - gain u_0,   gain = K dq/du,   u = V^2 or, of a device that
  * is not even in V, V, in kV */
 #include "base/html.h"
-#include "base/text.h"
 #include "base/version.h"
-#include "base/write_file.h"
 #include "model/reduced/reduced.h"
 
 #include <math.h>
@@ -67,10 +65,14 @@ static void add_numbers(struct dea_text *out, const struct dea_reduced_order *o,
   dea_text_add(out, "\"/>\n");
 }
 
-static void add_model(struct dea_text *out, const struct dea_reduced_order *o, const char *name,
-                      const struct dea_reduced_point *bias, double damping_ratio)
+dea_status dea_reduced_add_mujoco(const struct dea_reduced_export *e, struct dea_text *out)
 {
+  const struct dea_reduced_order *o = e->order;
+  const struct dea_reduced_point *bias = &e->at;
   const struct dea_reduced *core = &o->core;
+  if (core->mode_count == 0) {
+    return dea_fail(out->ctx, DEA_E_DESIGN, "a joint of MuJoCo needs the densities of all parts");
+  }
   const bool turns = dea_reduced_order_turns(o);
   const double K = 1 / bias->by_force, g = gain(core, bias), u = control(core, bias->voltage_V);
   const double x = bias->q - core->middle, end_V = core->even ? 0 : o->voltage_V[0];
@@ -86,7 +88,7 @@ static void add_model(struct dea_text *out, const struct dea_reduced_order *o, c
                "most %g %% of the stroke: ctrlrange -->\n<mujoco model=\"",
                DEA_VERSION, 1e-3 * bias->voltage_V, core->even ? "V^2 in kV^2" : "V in kV",
                100 * most_off);
-  dea_html_text(out, name);
+  dea_html_text(out, e->name);
   dea_text_add(out,
                "\">\n  <option gravity=\"0 0 0\" timestep=\"%.9g\"/>\n  <worldbody>\n    <body>\n"
                "      <inertial pos=\"0 0 0\" mass=\"%.9g\" diaginertia=\"%.9g %.9g %.9g\"/>\n"
@@ -99,35 +101,12 @@ static void add_model(struct dea_text *out, const struct dea_reduced_order *o, c
                "ctrllimited=\"true\" ctrlrange=\"%.9g %.9g\"/>\n  </actuator>\n"
                "  <keyframe>\n    <key name=\"bias\" qpos=\"%.9g\" ctrl=\"%.9g\"/>\n  </keyframe>\n"
                "  <custom>\n",
-               g, K * bias->q - g * u, -K, -(core->damping + 2 * damping_ratio * sqrt(K * mass)),
+               g, K * bias->q - g * u, -K, -(core->damping + 2 * e->damping_ratio * sqrt(K * mass)),
                reach(o, bias, end_V), reach(o, bias, o->voltage_V[1]), bias->q, u);
   add_numbers(out, o, "voltage_kV", 0);
   add_numbers(out, o, "rest", 1);
   add_numbers(out, o, "stiffness", 2);
   add_numbers(out, o, "gain", 3);
   dea_text_add(out, "  </custom>\n</mujoco>\n");
-}
-
-dea_status dea_reduced_order_write_mujoco(struct dea_context *ctx,
-                                          const struct dea_reduced_order *order,
-                                          const struct dea_device *device, double voltage_V,
-                                          double damping_ratio, const char *path)
-{
-  struct dea_text text = {.ctx = ctx};
-  struct dea_reduced_point bias;
-  char name[120];
-  const int end = dea_reduced_at(&order->core, 0, voltage_V, &bias);
-  if (end != DEA_REDUCED_OK) {
-    return dea_reduced_fail(ctx, order, end, voltage_V);
-  }
-  if (order->core.mode_count == 0) {
-    return dea_fail(ctx, DEA_E_DESIGN, "a joint of MuJoCo needs the densities of all parts");
-  }
-  dea_reduced_order_name(order, device, name, sizeof name);
-  void *locale = dea_c_locale_enter();
-  add_model(&text, order, name, &bias, damping_ratio);
-  dea_c_locale_leave(locale);
-  const dea_status status = dea_text_write_path(ctx, &text, path);
-  dea_text_free(&text);
-  return DEA_CHAIN(ctx, status);
+  return DEA_OK;
 }

@@ -1,11 +1,9 @@
 /* A reduced-order model as a linear system at a bias, in JSON. */
 #include "base/json.h"
 #include "base/version.h"
-#include "base/write_file.h"
 #include "model/reduced/reduced.h"
 
 #include <math.h>
-#include <string.h>
 
 /* x' = A x + B u, y = C x + D u: u voltage and force, y coordinate and charge, all from the bias.
  */
@@ -124,30 +122,25 @@ static json_t *system_json(const struct bias *b, const struct system *s, bool tu
   return root;
 }
 
-dea_status dea_reduced_order_write_state_space(struct dea_context *ctx,
-                                               const struct dea_reduced_order *order,
-                                               double voltage_V, double damping_ratio,
-                                               const char *path)
+dea_status dea_reduced_add_state_space(const struct dea_reduced_export *e, struct dea_text *out)
 {
-  struct bias b = {.core = &order->core, .damping_ratio = damping_ratio};
-  const bool turns = dea_reduced_order_turns(order);
-  const int end = dea_reduced_at(b.core, 0, voltage_V, &b.at);
+  struct bias b = {.core = &e->order->core, .at = e->at, .damping_ratio = e->damping_ratio};
   char *text = NULL;
-  if (end != DEA_REDUCED_OK) {
-    return dea_reduced_fail(ctx, order, end, voltage_V);
-  }
   b.x = b.at.q - b.core->middle;
   b.strain = dea_reduced_polynomial(b.core->strain, b.x);
   b.K = b.fast = 1 / b.at.by_force;
   for (int i = 0; i < b.core->branch_count; i++) {
     b.fast += b.core->branch_N_per_m[i] * b.strain * b.strain;
   }
-  struct system *s = dea_alloc(ctx, 1, sizeof *s);
+  struct system *s = dea_alloc(out->ctx, 1, sizeof *s);
   DEA_TRY_MEMORY(s != NULL);
   add_all(&b, s);
-  dea_status status = dea_json_text(ctx, system_json(&b, s, turns), &text);
-  status = status == DEA_OK ? dea_file_write(ctx, path, text, strlen(text)) : status;
-  dea_free(ctx, text);
-  dea_free(ctx, s);
-  return DEA_CHAIN(ctx, status);
+  dea_status status =
+      dea_json_text(out->ctx, system_json(&b, s, dea_reduced_order_turns(e->order)), &text);
+  if (status == DEA_OK) {
+    dea_text_add(out, "%s", text);
+  }
+  dea_free(out->ctx, text);
+  dea_free(out->ctx, s);
+  return status;
 }

@@ -49,10 +49,6 @@ void *fmi3InstantiateScheduledExecution()
 
 int fmi3SetDebugLogging(void *of, bool on, size_t count, const char *const categories[])
 {
-  (void)of;
-  (void)on;
-  (void)count;
-  (void)categories;
   return fmi3OK;
 }
 
@@ -74,15 +70,6 @@ void *fmi3InstantiateCoSimulation(const char *name, const char *token, const cha
                                   log_message log, void (*update)(void))
 {
   struct instance *i = strcmp(token, fmi3_token) == 0 ? calloc(1, sizeof *i) : NULL;
-  (void)name;
-  (void)resources;
-  (void)visible;
-  (void)logging;
-  (void)events;
-  (void)early;
-  (void)required;
-  (void)count;
-  (void)update;
   if (i != NULL) {
     i->environment = environment;
     i->log = log;
@@ -97,7 +84,6 @@ void fmi3FreeInstance(void *of)
 }
 int fmi3Terminate(void *of)
 {
-  (void)of;
   return fmi3OK;
 }
 
@@ -115,10 +101,6 @@ int fmi3EnterInitializationMode(void *of, bool has_tolerance, double tolerance, 
                                 bool has_stop, double stop)
 {
   struct instance *i = of;
-  (void)has_tolerance;
-  (void)tolerance;
-  (void)has_stop;
-  (void)stop;
   i->time = start;
   return fmi3OK;
 }
@@ -204,7 +186,6 @@ int fmi3DoStep(void *of, double from, double length, bool no_return, bool *event
 {
   struct instance *i = of;
   const double count = fmax(1, ceil(length / i->in[LONGEST_STEP] * (1 - 1e-12)));
-  (void)no_return;
   *event = *terminate = *early = false;
   int end = step(i, 0); // what jumps
   for (double k = 0; k < count && end == DEA_REDUCED_OK; k++) {
@@ -232,7 +213,6 @@ int fmi3SetFMUState(void *of, void *state)
 
 int fmi3FreeFMUState(void *of, void **state)
 {
-  (void)of;
   free(*state);
   *state = NULL;
   return fmi3OK;
