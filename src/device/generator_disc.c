@@ -9,14 +9,10 @@ static dea_status build_film(struct dea_context *ctx, const struct dea_design *d
                              struct dea_device *device)
 {
   const struct dea_material_choice choice = {
-      .law = design->film.law.text,
-      .permittivity = design->film.permittivity.text,
-      .breakdown = design->film.breakdown.text,
-      .law_place = design->film.law.location,
-      .permittivity_place = design->film.permittivity.location,
-      .breakdown_place = design->film.breakdown.location,
-      .viscosity = design->film.viscosity.text,
-      .viscosity_place = design->film.viscosity.location,
+      .law = &design->film.law,
+      .permittivity = &design->film.permittivity,
+      .breakdown = &design->film.breakdown,
+      .viscosity = &design->film.viscosity,
   };
   const double pre_stretch[2] = {design->pre_stretch.si, design->pre_stretch.si};
   const struct dea_generator_film film = {

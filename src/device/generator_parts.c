@@ -63,14 +63,10 @@ static dea_status resolve_ply(const struct maker *m, const struct dea_parts_ply 
                               struct dea_material *out)
 {
   const struct dea_material_choice choice = {
-      .law = ply->law.text,
-      .permittivity = ply->permittivity.text,
-      .breakdown = ply->breakdown.text,
-      .law_place = ply->law.location,
-      .permittivity_place = ply->permittivity.location,
-      .breakdown_place = ply->breakdown.location,
-      .viscosity = ply->viscosity.text,
-      .viscosity_place = ply->viscosity.location,
+      .law = &ply->law,
+      .permittivity = &ply->permittivity,
+      .breakdown = &ply->breakdown,
+      .viscosity = &ply->viscosity,
   };
   dea_status status = dea_generator_material(m->ctx, m->design, &ply->material, &choice, out);
   if (status == DEA_E_DESIGN) { // a finding lets the other plies be checked
