@@ -154,10 +154,7 @@ dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
   m->curve = (struct dea_curve){.model = "measurement", .kind = "sweep", .complete = true};
   const dea_status status = read_table(&r, file, m);
   dea_arena_free(&r.memory);
-  if (status != DEA_OK) {
-    dea_measurement_destroy(ctx, m);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_measurement_destroy(ctx, m));
   *out = m;
   return DEA_OK;
 }
