@@ -15,10 +15,10 @@ static struct dea_context *ctx;
 static void run_fit(void *user)
 {
   const struct dea_fit_options options = {false};
-  struct dea_fit *fit;
+  struct dea_fit fit;
   (void)user;
   bench_need(dea_fit_run(ctx, &file, series, TESTS, &options, &fit), ctx);
-  dea_fit_destroy(ctx, fit);
+  dea_fit_free(&fit);
 }
 
 /* A number between -1 and 1. */

@@ -179,11 +179,11 @@ static void try_sets(const struct subject *s, double rho, bool known, size_t set
   make_data(s, &data);
   for (size_t k = 0; k < sets; k++) {
     const struct dea_fit_options options = {.profile = 4 * k < sets};
-    struct dea_fit *fit;
+    struct dea_fit fit;
     add_noise(s, rho, known, &seed, &data);
     verify_ok(ctx, dea_fit_run(ctx, &data.file, data.series, s->tests, &options, &fit));
     for (size_t j = 0; j < s->params; j++) {
-      const struct dea_fit_value *v = &fit->values[j];
+      const struct dea_fit_value *v = &fit.core.values[j];
       struct count *c = &counts[j];
       const double off = fabs(v->value - s->truth[j]);
       c->within_1 += off <= v->std ? 1U : 0U;
@@ -193,7 +193,7 @@ static void try_sets(const struct subject *s, double rho, bool known, size_t set
       c->squares += off * off;
       c->std += v->std;
     }
-    dea_fit_destroy(ctx, fit);
+    dea_fit_free(&fit);
   }
   dea_arena_free(&data.memory);
 }

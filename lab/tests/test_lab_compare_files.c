@@ -116,24 +116,32 @@ TEST(test_many_errors_are_cut)
   assert_null(strstr(command_err, "history.csv:23:"));
 }
 
+/* Adds a model to a set. */
+static dea_status add_model(struct dea_context *ctx, struct dea_compare_set *set,
+                            const struct dea_result *result, const char *model)
+{
+  struct dea_set_curve curve = {.result = result, .model = model};
+  snprintf(curve.name, sizeof curve.name, "%s", model);
+  return dea_compare_set_add(ctx, set, &curve, "");
+}
+
 /* Reading, computing and JSON with failing allocations. */
 static void compare_once(struct dea_context *ctx)
 {
   char path[600];
   struct dea_measured *measured = NULL;
-  struct dea_compare_set *set = NULL;
+  struct dea_compare_set set = {.reference = "small", .memory = {.ctx = ctx}};
   struct dea_result *result = NULL;
   struct dea_design design = fake_design();
   snprintf(path, sizeof path, "%s/small", command_folder);
   dea_status status = dea_measured_read(ctx, path, &measured);
   status = status == DEA_OK ? known_result(ctx, &design, &result) : status;
-  status = status == DEA_OK ? dea_compare_set_create(ctx, "small", measured, NULL, &set) : status;
-  status = status == DEA_OK ? dea_compare_set_add(ctx, set, "3d", result, "3d", "") : status;
-  status =
-      status == DEA_OK ? dea_compare_set_add(ctx, set, "lumped", result, "lumped", "") : status;
-  status = status == DEA_OK ? dea_compare_set_compute(ctx, set, NULL, 0) : status;
+  set.measured = measured;
+  status = status == DEA_OK ? add_model(ctx, &set, result, "3d") : status;
+  status = status == DEA_OK ? add_model(ctx, &set, result, "lumped") : status;
+  status = status == DEA_OK ? dea_compare_set_compute(ctx, &set, NULL, 0) : status;
   failing_check(ctx, status);
-  dea_compare_set_destroy(ctx, set);
+  dea_arena_free(&set.memory);
   dea_result_destroy(ctx, result);
   dea_measured_destroy(ctx, measured);
 }
@@ -142,7 +150,7 @@ static void compare_once(struct dea_context *ctx)
 static void compare_monitors_once(struct dea_context *ctx)
 {
   static const struct dea_column hub = {"hub_z_m", "m", "um", 1e6, "hub z", "displacement"};
-  struct dea_compare_set *set = NULL;
+  struct dea_compare_set set = {.reference = "it", .memory = {.ctx = ctx}};
   struct dea_result *result = NULL;
   struct dea_design design = fake_design();
   int column;
@@ -156,14 +164,14 @@ static void compare_monitors_once(struct dea_context *ctx)
     status = dea_arena_status(&memory);
     dea_point_set(&sweep->points[i], column, 1e-6);
   }
-  status = status == DEA_OK ? dea_compare_set_create(ctx, "it", NULL, result, &set) : status;
-  status = status == DEA_OK ? dea_compare_set_add(ctx, set, "3d", result, "3d", "") : status;
-  status = status == DEA_OK ? dea_compare_set_compute(ctx, set, NULL, 0) : status;
+  set.reference_result = result;
+  status = status == DEA_OK ? add_model(ctx, &set, result, "3d") : status;
+  status = status == DEA_OK ? dea_compare_set_compute(ctx, &set, NULL, 0) : status;
   if (status == DEA_OK) {
-    assert_string_equal(set->misfits[set->misfit_count - 1].misfit.quantity->key, "hub_z_m");
+    assert_string_equal(set.misfits[set.misfit_count - 1].misfit.quantity->key, "hub_z_m");
   }
   failing_check(ctx, status);
-  dea_compare_set_destroy(ctx, set);
+  dea_arena_free(&set.memory);
   dea_result_destroy(ctx, result);
   dea_arena_free(&memory);
 }

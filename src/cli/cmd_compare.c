@@ -176,21 +176,21 @@ static dea_status add_run(struct dea_context *ctx, const struct request *request
 {
   const char *models[DEA_DESIGN_MODELS_MAX];
   size_t count = models_of(request, sides[side].run, models);
-  char run[DEA_LABEL_SIZE], name[DEA_LABEL_SIZE];
+  char run[DEA_LABEL_SIZE];
   side_name(request, side, run);
   if (count == 0) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "%s has no model %s", request->names.at[side],
                     request->models.count > 0 ? "of those asked for" : "with points");
   }
   for (size_t m = 0; m < count; m++) {
+    struct dea_set_curve curve = {.result = sides[side].run->result, .model = models[m]};
     if (request->names.count == 2) {
-      snprintf(name, sizeof name, "%s", models[m]);
+      snprintf(curve.name, sizeof curve.name, "%s", models[m]);
     } else {
-      snprintf(name, sizeof name, "%.60s%s%.60s", run, one_model ? "" : ", ",
+      snprintf(curve.name, sizeof curve.name, "%.60s%s%.60s", run, one_model ? "" : ", ",
                one_model ? "" : models[m]);
     }
-    DEA_TRY(ctx, dea_compare_set_add(ctx, set, name, sides[side].run->result, models[m],
-                                     reference_model(request, models[m])));
+    DEA_TRY(ctx, dea_compare_set_add(ctx, set, &curve, reference_model(request, models[m])));
   }
   return DEA_OK;
 }
@@ -200,14 +200,19 @@ static dea_status add_pair(struct dea_context *ctx, const struct request *reques
                            const struct side *a, const char *model, const char *reference_model,
                            struct dea_compare_set *set)
 {
-  char name[DEA_LABEL_SIZE], label[DEA_LABEL_SIZE];
+  struct dea_set_curve curve = {.model = ""};
+  char name[DEA_LABEL_SIZE];
   side_name(request, 0, name);
   if (a->measured != NULL) {
-    return dea_compare_set_add_table(ctx, set, name, &a->measured->points->curve, reference_model);
+    curve.curve = &a->measured->points->curve;
+    memcpy(curve.name, name, sizeof name);
+  } else {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a side is a run or a table
+    curve.result = a->run->result;
+    curve.model = model;
+    snprintf(curve.name, sizeof curve.name, "%.60s, %.60s", name, model);
   }
-  snprintf(label, sizeof label, "%.60s, %.60s", name, model);
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a side is a run or a table
-  return dea_compare_set_add(ctx, set, label, a->run->result, model, reference_model);
+  return dea_compare_set_add(ctx, set, &curve, reference_model);
 }
 
 /* The models that both runs have; the one asked for with --model; else the first ones. */
@@ -428,21 +433,17 @@ static int run(struct dea_cli *cli, void *user)
   const struct request *request = user;
   struct dea_context *ctx = cli->ctx;
   struct side sides[SIDES_MAX] = {{0}};
-  struct dea_compare_set *set = NULL;
-  char reference[DEA_LABEL_SIZE];
+  struct dea_compare_set set = {.pairs = is_pair(request), .memory = {.ctx = ctx}};
   size_t last = request->names.count - 1;
-  side_name(request, last, reference);
+  side_name(request, last, set.reference);
   dea_status status = read_sides(ctx, request, sides);
   if (status == DEA_OK) {
-    status = dea_compare_set_create(ctx, reference, sides[last].measured,
-                                    sides[last].run != NULL ? sides[last].run->result : NULL, &set);
-  }
-  if (status == DEA_OK) {
-    set->pairs = is_pair(request);
-    status = compare(ctx, request, sides, set);
+    set.measured = sides[last].measured;
+    set.reference_result = sides[last].run != NULL ? sides[last].run->result : NULL;
+    status = compare(ctx, request, sides, &set);
   }
   int code = cli_report(cli, status);
-  dea_compare_set_destroy(ctx, set);
+  dea_arena_free(&set.memory);
   for (size_t i = 0; i <= last; i++) {
     dea_run_destroy(ctx, sides[i].run);
     dea_measured_destroy(ctx, sides[i].measured);

@@ -58,17 +58,18 @@ static void print_misfit(const struct dea_lsq_statistics *statistics, const char
   }
 }
 
-static void print_weak(const char weak[][DEA_FIT_WEAK_SIZE], size_t count)
+static void print_weak(const struct dea_fit_core *core)
 {
-  for (size_t k = 0; k < count; k++) {
-    printf("%s\n", weak[k]);
+  for (size_t k = 0; k < core->weak_count; k++) {
+    printf("%s\n", core->weak[k]);
   }
 }
 
-static void print_next(const char *word, const struct dea_fit_next *next, size_t count)
+static void print_next(const struct dea_fit_core *core, const char *word)
 {
-  if (count > 0) {
-    printf("the %s that would tell most: %s (error bars x %.2f)\n", word, next->what, next->shrink);
+  if (core->next_count > 0) {
+    printf("the %s that would tell most: %s (error bars x %.2f)\n", word, core->next[0].what,
+           core->next[0].shrink);
   }
 }
 
@@ -112,12 +113,13 @@ static void print_laws(const struct dea_fit *fit)
     if (c->failed) {
       printf("%-18s cannot be fitted: %s\n", c->name, c->why);
     } else {
-      print_candidate(c, fit->scale_known, i == fit->chosen);
+      print_candidate(c, fit->core.scale_known, i == fit->chosen);
     }
   }
-  printf(fit->scale_known ? "(std: times the uncertainty, by which the law is chosen; %%: of the "
-                            "test's largest stress)\n\n"
-                          : "(of the largest stress of all tests)\n\n");
+  printf(fit->core.scale_known
+             ? "(std: times the uncertainty, by which the law is chosen; %%: of the "
+               "test's largest stress)\n\n"
+             : "(of the largest stress of all tests)\n\n");
 }
 
 static void print_law_values(const struct dea_fit *fit)
@@ -126,8 +128,8 @@ static void print_law_values(const struct dea_fit *fit)
   for (size_t j = 0; j < fit->model.count; j++) {
     const struct dea_fit_param *param = &fit->model.params[j];
     const struct shown shown = shown_of_law(param->unit);
-    printf("  %-12s %12.6g", param->name, shown.factor * fit->values[j].value);
-    print_known(&fit->values[j], &shown, 3, "", param->logarithmic);
+    printf("  %-12s %12.6g", param->name, shown.factor * fit->core.values[j].value);
+    print_known(&fit->core.values[j], &shown, 3, "", param->logarithmic);
   }
 }
 
@@ -174,11 +176,11 @@ static void print_fit(const struct dea_fit *fit)
   print_laws(fit);
   print_law_values(fit);
   print_tests(fit);
-  print_misfit(&fit->statistics, "the law or they are");
-  print_weak(fit->weak, fit->weak_count);
+  print_misfit(&fit->core.statistics, "the law or they are");
+  print_weak(&fit->core);
   print_stability(fit);
   print_spreads(fit);
-  print_next("test", fit->next, fit->next_count);
+  print_next(&fit->core, "test");
 }
 
 // A device ----------------------------------------------------------------------------------------
@@ -200,7 +202,7 @@ static void print_values(const struct dea_device_fit *fit)
   printf("%-28s %12s    %s\n", "", "as designed", "as built");
   for (size_t j = 0; j < fit->param_count; j++) {
     const struct dea_device_param *param = &fit->params[j];
-    const struct dea_fit_value *v = &fit->values[j];
+    const struct dea_fit_value *v = &fit->core.values[j];
     const struct shown shown = shown_of(param, v->value);
     printf("%-28s %12.6g -> %10.6g", param->param.name, shown.factor * param->designed,
            shown.factor * v->value);
@@ -254,10 +256,10 @@ static void print_device_fit(const struct dea_device_fit *fit)
 {
   print_values(fit);
   print_curves(fit);
-  print_misfit(&fit->statistics, "the model, what it was not asked to fit, or they are");
-  print_weak(fit->weak, fit->weak_count);
+  print_misfit(&fit->core.statistics, "the model, what it was not asked to fit, or they are");
+  print_weak(&fit->core);
   print_pairs(fit);
-  print_next("measurement", fit->next, fit->next_count);
+  print_next(&fit->core, "measurement");
 }
 
 /* When so many have failed by Weibull's law. */
@@ -398,22 +400,23 @@ struct request {
     const struct dea_fit_folder to = {request->output, request->force, cli->command_line,          \
                                       &request->format};                                           \
     void *file;                                                                                    \
-    struct dea_##its_fit *fit = NULL;                                                              \
+    struct dea_##its_fit fit = {0};                                                                \
     dea_status status = dea_fit_head_read(ctx, request->file, &form, &file);                       \
     status = status == DEA_OK ? run : status;                                                      \
-    status = status == DEA_OK ? dea_##its_fit##_write(ctx, fit, &to) : status;                     \
+    const bool fitted = status == DEA_OK;                                                          \
+    status = fitted ? dea_##its_fit##_write(ctx, &fit, &to) : status;                              \
     cli_progress_clear(cli);                                                                       \
-    if (fit != NULL && request->json) {                                                            \
-      cli_print_json(dea_##its_fit##_json(fit, cli->command_line));                                \
-    } else if (fit != NULL) {                                                                      \
-      print_##its_fit(fit);                                                                        \
+    if (fitted && request->json) {                                                                 \
+      cli_print_json(dea_##its_fit##_json(&fit, cli->command_line));                               \
+    } else if (fitted) {                                                                           \
+      print_##its_fit(&fit);                                                                       \
       if (status == DEA_OK) {                                                                      \
         printf("\nwritten to %s\n", request->output);                                              \
       }                                                                                            \
     }                                                                                              \
     fflush(stdout);                                                                                \
     const int code = cli_report(cli, status);                                                      \
-    dea_##its_fit##_destroy(ctx, fit);                                                             \
+    dea_##its_fit##_free(&fit);                                                                    \
     dea_fit_head_destroy(ctx, file);                                                               \
     return code;                                                                                   \
   }

@@ -23,11 +23,11 @@ static void print_line(const struct dea_material_data *data)
 {
   printf("%-28s %-10s %s\n", data->name.text, kind_of(data), data->title.text);
   for (size_t i = 0; i < data->law_count; i++) {
-    printf("%-28s   law %s (%s)%s\n", "", data->laws[i].id.text, data->laws[i].law_name.text,
+    printf("%-28s   law %s (%s)%s\n", "", data->laws[i].head.id.text, data->laws[i].law_name.text,
            i == 0 && data->law_count > 1 ? ", default" : "");
   }
   for (size_t i = 0; i < data->permittivity_count; i++) {
-    printf("%-28s   permittivity %s%s\n", "", data->permittivity[i].id.text,
+    printf("%-28s   permittivity %s%s\n", "", data->permittivity[i].head.id.text,
            i == 0 && data->permittivity_count > 1 ? ", default" : "");
   }
 }
@@ -55,8 +55,8 @@ static void add_stiffness(struct dea_text *out, const struct dea_material_data *
     }
     dea_text_add(out, "%s%s %.4g kPa", i > 0 ? "; " : "", set->law_name.text,
                  1e-3 * set->law->shear_modulus(param));
-    if (set->range.count == 2) {
-      dea_text_add(out, " to %g", set->range.limits[1].si);
+    if (set->head.range.count == 2) {
+      dea_text_add(out, " to %g", set->head.range.limits[1].si);
     }
   }
   if (data->has_elastic) {

@@ -13,28 +13,6 @@ const char *const dea_half_names[DEA_HALVES] = {
 
 static const struct dea_location nowhere = {"", 0, 0};
 
-dea_status dea_compare_set_create(struct dea_context *ctx, const char *reference,
-                                  const struct dea_measured *measured,
-                                  const struct dea_result *reference_result,
-                                  struct dea_compare_set **out)
-{
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  snprintf((*out)->reference, sizeof(*out)->reference, "%s", reference);
-  (*out)->measured = measured;
-  (*out)->reference_result = reference_result;
-  (*out)->memory.ctx = ctx;
-  return DEA_OK;
-}
-
-void dea_compare_set_destroy(struct dea_context *ctx, struct dea_compare_set *set)
-{
-  if (set != NULL) {
-    dea_arena_free(&set->memory);
-    dea_free(ctx, set);
-  }
-}
-
 /* Curve of the reference run: of the model asked for, of the same, or its first. */
 static const struct dea_curve *reference_curve(const struct dea_result *result, const char *model,
                                                const char *asked)
@@ -64,8 +42,8 @@ dea_status dea_compare_no_model(struct dea_context *ctx, const char *name,
   return status;
 }
 
-static dea_status add_curve(struct dea_context *ctx, struct dea_compare_set *set, const char *name,
-                            const struct dea_set_curve *what, const char *reference_model)
+dea_status dea_compare_set_add(struct dea_context *ctx, struct dea_compare_set *set,
+                               const struct dea_set_curve *what, const char *reference_model)
 {
   if (set->curve_count == DEA_SET_CURVES_MAX) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
@@ -74,6 +52,9 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_compare_set *set
   }
   struct dea_set_curve *curve = &set->curves[set->curve_count];
   *curve = *what;
+  if (what->result != NULL) {
+    curve->curve = dea_figure_curve(what->result, what->model, false);
+  }
   curve->reference = set->measured != NULL
                          ? &set->measured->points->curve
                          : reference_curve(set->reference_result, what->model, reference_model);
@@ -81,26 +62,8 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_compare_set *set
     return dea_compare_no_model(ctx, set->reference, set->reference_result,
                                 reference_model[0] != '\0' ? reference_model : what->model);
   }
-  snprintf(curve->name, sizeof curve->name, "%s", name);
   set->curve_count++;
   return DEA_OK;
-}
-
-dea_status dea_compare_set_add(struct dea_context *ctx, struct dea_compare_set *set,
-                               const char *name, const struct dea_result *result, const char *model,
-                               const char *reference_model)
-{
-  const struct dea_set_curve curve = {
-      .result = result, .model = model, .curve = dea_figure_curve(result, model, false)};
-  return add_curve(ctx, set, name, &curve, reference_model);
-}
-
-dea_status dea_compare_set_add_table(struct dea_context *ctx, struct dea_compare_set *set,
-                                     const char *name, const struct dea_curve *table,
-                                     const char *reference_model)
-{
-  const struct dea_set_curve curve = {.model = "", .curve = table};
-  return add_curve(ctx, set, name, &curve, reference_model);
 }
 
 void dea_compare_set_beside(const struct dea_compare_set *set, size_t curve,

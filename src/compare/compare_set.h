@@ -13,7 +13,7 @@ enum { DEA_SET_CURVES_MAX = 16 };
 struct dea_set_curve {
   char name[DEA_LABEL_SIZE];         // short, for keys and tables
   const struct dea_result *result;   // lent; NULL: a table
-  const char *model;                 // lent; "" of a table
+  const char *model;                 // lent; "": a table
   const struct dea_curve *curve;     // against the voltage; lent, NULL: none
   const struct dea_curve *reference; // that it is set against; lent
 };
@@ -33,9 +33,11 @@ struct dea_set_misfit {
   struct dea_misfit misfit;
 };
 
+/* Reference, measured or reference_result, pairs and the context of the memory are set by the
+ * caller, who frees the memory. */
 struct dea_compare_set {
   char reference[DEA_LABEL_SIZE];
-  bool pairs; // each curve has figures of its own; to be set before the set is computed
+  bool pairs;                                // each curve has figures of its own
   const struct dea_measured *measured;       // lent; NULL: the reference is a run
   const struct dea_result *reference_result; // lent; NULL: the reference is a measurement
   struct dea_set_curve curves[DEA_SET_CURVES_MAX];
@@ -45,22 +47,11 @@ struct dea_compare_set {
   struct dea_arena memory;
 };
 
-/* One of measured and reference_result is not NULL. out: owned by the caller, NULL on failure. */
-dea_status dea_compare_set_create(struct dea_context *ctx, const char *reference,
-                                  const struct dea_measured *measured,
-                                  const struct dea_result *reference_result,
-                                  struct dea_compare_set **out);
-void dea_compare_set_destroy(struct dea_context *ctx, struct dea_compare_set *set);
-/* Adds a model of a result; reference_model: of the reference run, "" for the same or else its
- * first. DEA_E_UNSUPPORTED for one too many, DEA_E_ARGUMENT where the reference has no such model.
- */
+/* Adds a curve, whose name, and result with model or curve, are set; reference_model: of the
+ * reference run, "" for the same or else its first. DEA_E_UNSUPPORTED for one too many,
+ * DEA_E_ARGUMENT where the reference has no such model. */
 dea_status dea_compare_set_add(struct dea_context *ctx, struct dea_compare_set *set,
-                               const char *name, const struct dea_result *result, const char *model,
-                               const char *reference_model);
-/* Adds a measured table. */
-dea_status dea_compare_set_add_table(struct dea_context *ctx, struct dea_compare_set *set,
-                                     const char *name, const struct dea_curve *table,
-                                     const char *reference_model);
+                               const struct dea_set_curve *what, const char *reference_model);
 /* Computes all misfits of these columns [count], 0: of all. What is left out, and signs that
  * differ, become notes; DEA_E_ARGUMENT when nothing is left or no curve has a quantity that was
  * asked for. */

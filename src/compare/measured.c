@@ -54,38 +54,23 @@ static bool begins(const struct dea_csv_columns *rows, size_t start, size_t row)
          rows->values[PROFILE_X][row] <= rows->values[PROFILE_X][start];
 }
 
-/* Counts the profiles, and checks that x rises in each. */
-static dea_status count_profiles(struct dea_context *ctx, const struct dea_csv_columns *rows,
-                                 size_t *count)
-{
-  size_t start = 0;
-  *count = 0;
-  for (size_t i = 0; i < rows->rows; i++) {
-    if (begins(rows, start, i)) {
-      start = i;
-      ++*count;
-    } else if (!(rows->values[PROFILE_X][i] > rows->values[PROFILE_X][i - 1])) {
-      return out_of_order(ctx, rows, i, "x does not rise");
-    }
-  }
-  return DEA_OK;
-}
-
+/* Parts the rows into profiles, in each of which x rises. */
 static dea_status part_profiles(struct dea_context *ctx, struct dea_measured *m)
 {
   const struct dea_csv_columns *rows = &m->profile_rows;
-  size_t count, start = 0;
-  DEA_TRY(ctx, count_profiles(ctx, rows, &count));
-  m->profiles = dea_alloc(ctx, count, sizeof *m->profiles);
-  DEA_TRY_MEMORY(m->profiles != NULL);
+  size_t capacity = 0, start = 0;
   for (size_t i = 0; i < rows->rows; i++) {
+    double *x = rows->values[PROFILE_X] + i;
     if (begins(rows, start, i)) {
       double *std = rows->std[PROFILE_Z];
       start = i;
-      m->profiles[m->profile_count++] =
-          (struct dea_measured_profile){rows->values[PROFILE_V][i],
-                                        {0, rows->values[PROFILE_X] + i,
-                                         rows->values[PROFILE_Z] + i, std != NULL ? std + i : std}};
+      DEA_TRY(ctx,
+              dea_array_grow(ctx, &m->profiles, m->profile_count, &capacity, sizeof *m->profiles));
+      m->profiles[m->profile_count++] = (struct dea_measured_profile){
+          rows->values[PROFILE_V][i],
+          {0, x, rows->values[PROFILE_Z] + i, std != NULL ? std + i : std}};
+    } else if (!(x[0] > x[-1])) {
+      return out_of_order(ctx, rows, i, "x does not rise");
     }
     m->profiles[m->profile_count - 1].z.count++;
   }
@@ -162,14 +147,9 @@ dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct d
   struct dea_measured *m = dea_alloc(ctx, 1, sizeof *m);
   *out = NULL;
   DEA_TRY_MEMORY(m != NULL);
-  m->path = dea_intern(ctx, path);
-  dea_status status = m->path == NULL            ? DEA_E_MEMORY
-                      : dea_path_is_folder(path) ? read_folder(ctx, path, m)
-                                                 : dea_measurement_read(ctx, path, &m->points);
-  if (status != DEA_OK) {
-    dea_measured_destroy(ctx, m);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  dea_status status = dea_path_is_folder(path) ? read_folder(ctx, path, m)
+                                               : dea_measurement_read(ctx, path, &m->points);
+  DEA_TRY_ELSE(ctx, status, dea_measured_destroy(ctx, m));
   *out = m;
   return DEA_OK;
 }

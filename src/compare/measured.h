@@ -16,7 +16,6 @@ struct dea_measured_profile {
 enum { DEA_MEASURED_TIME, DEA_MEASURED_VOLTAGE, DEA_MEASURED_QUANTITIES };
 
 struct dea_measured {
-  const char *path;                      // interned
   struct dea_measurement *points;        // quantities against the voltage
   struct dea_csv_columns profile_rows;   // of all profiles
   struct dea_measured_profile *profiles; // owned, in the order of the file

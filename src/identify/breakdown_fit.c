@@ -237,11 +237,10 @@ static dea_status check_powers(const struct dea_breakdown_fit *fit)
   return DEA_OK;
 }
 
-static dea_status run(void *made, const void *file)
+dea_status dea_breakdown_fit_run(struct dea_context *ctx, const struct dea_breakdown_file *file,
+                                 struct dea_breakdown_fit *fit)
 {
-  struct dea_breakdown_fit *fit = made;
-  struct dea_context *ctx = fit->memory.ctx;
-  fit->file = file;
+  *fit = (struct dea_breakdown_fit){.file = file, .memory = {.ctx = ctx}};
   char *path = dea_path_beside(ctx, fit->file->head.file, fit->file->tests.text);
   dea_status status = path != NULL ? read_films(fit, path) : DEA_E_MEMORY;
   dea_free(ctx, path);
@@ -252,7 +251,10 @@ static dea_status run(void *made, const void *file)
   return dea_refuse_argument(ctx, fit->file->tests.location, status);
 }
 
-DEA_FIT_FRAME(breakdown, run)
+void dea_breakdown_fit_free(struct dea_breakdown_fit *fit)
+{
+  dea_arena_free(&fit->memory);
+}
 
 double dea_breakdown_fit_stretch(const struct dea_breakdown_fit *fit)
 {

@@ -18,7 +18,7 @@ struct dea_breakdown_file {
 extern const struct dea_fit_form dea_breakdown_form;
 
 struct dea_breakdown_fit {
-  struct dea_arena memory;               // the first member
+  struct dea_arena memory;
   const struct dea_breakdown_file *file; // lent
   const char *tests_file;                // interned
   char sha256[65];                       // of its bytes
@@ -31,10 +31,10 @@ struct dea_breakdown_fit {
 };
 
 /* Reads the films and fits. What is wrong with them becomes findings with file and line, DEA_E_IO
- * then; else as dea_weibull_solve. out: owned by the caller, NULL on failure. */
+ * then; else as dea_weibull_solve. fit: freed by the caller, also after a failure. */
 dea_status dea_breakdown_fit_run(struct dea_context *ctx, const struct dea_breakdown_file *file,
-                                 struct dea_breakdown_fit **out);
-void dea_breakdown_fit_destroy(struct dea_context *ctx, struct dea_breakdown_fit *fit);
+                                 struct dea_breakdown_fit *fit);
+void dea_breakdown_fit_free(struct dea_breakdown_fit *fit);
 
 /* Stretch to which the field found belongs: 1, or that of all films where no power of it is known.
  */

@@ -59,34 +59,18 @@ struct dea_device_fit {
   const char *design_file, *model;    // interned; static storage
   char design_sha256[65];
   struct dea_device_param params[DEA_DEVICE_PARAMS_MAX];
-  struct dea_fit_value values[DEA_DEVICE_PARAMS_MAX];
   size_t param_count;
+  struct dea_fit_core core; // of the same parameters
   struct dea_device_curve curves[DEA_DEVICE_CURVES_MAX];
   size_t curve_count;
-  struct dea_lsq_fit least_squares;
-  struct dea_lsq_statistics statistics;
-  bool scale_known; // uncertainties were given
-  double scatter;   // root mean square misfit where they were not, in the quantity's SI unit
-  bool settled;     // the values leave out as slack the rows that were left out for them
-  char weak[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE];
-  size_t weak_count;
+  bool settled; // the values leave out as slack the rows that were left out for them
   struct dea_device_pair pairs[DEA_DEVICE_PAIRS_MAX];
   size_t pair_count;
-  struct dea_fit_next next[DEA_FIT_NEXT_MAX];
-  size_t next_count;
   size_t evaluations;     // of the model: sweeps through all voltages
   struct dea_text design; // file of the fitted device
   struct dea_arena memory;
 };
 
-/* A measurement that could be made: derivatives of what it would give [rows x params], over its
- * assumed uncertainty; lent. */
-struct dea_device_candidate {
-  char what[96];
-  size_t rows;
-  const double *J;
-};
-
-/* Fills weak, pairs and next from what was fitted (least_squares and statistics). */
-void dea_device_identify(struct dea_device_fit *fit, const struct dea_device_candidate *candidates,
+/* Fills weak, pairs and next from what was fitted; list [count]: what could be measured. */
+void dea_device_identify(struct dea_device_fit *fit, const struct dea_fit_proposal *list,
                          size_t count);

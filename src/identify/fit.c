@@ -16,14 +16,13 @@ struct work {
   struct dea_material materials[DEA_FIT_LAWS_MAX]; // of the candidates, as fitted to all rows
   double from_s, to_s;                             // that the tests in time span
   bool timed;
-  size_t rows; // that were fitted
 };
 
 /* ---- the rows ---- */
 
 static struct dea_fit_rows all_rows(const struct dea_fit *fit)
 {
-  return (struct dea_fit_rows){fit->series, fit->series_count, SIZE_MAX, 0, 0, fit->scatter_Pa};
+  return (struct dea_fit_rows){fit->series, fit->series_count, SIZE_MAX, 0, 0, fit->core.scatter};
 }
 
 /* The times that the fitted tests span at the reference temperature, as far as the shift can be
@@ -82,8 +81,8 @@ static dea_status check_uncertainties(struct work *w)
   if (rows == 0) {
     return dea_fail(w->ctx, DEA_E_DESIGN, "no test is there to be fitted (use: fit)");
   }
-  fit->scale_known = known == rows;
-  fit->scatter_Pa = SCATTER_SHARE * most; // a scale only: what it is follows from the residuals
+  fit->core.scale_known = known == rows;
+  fit->core.scatter = SCATTER_SHARE * most; // a scale only: what it is follows from the residuals
   if (known > 0 && known < rows) {
     DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, lacking->test->name.location,
                                     "'%.60s' gives no uncertainty while others do: give it one, or "
@@ -132,7 +131,7 @@ static dea_status find_branches(struct work *w, struct dea_fit_model *model)
       dea_context_clear(w->ctx);
       continue;
     }
-    const double value = criterion(&fit, dea_fit_model_free(&trial), w->fit->scale_known);
+    const double value = criterion(&fit, dea_fit_model_free(&trial), w->fit->core.scale_known);
     if (value < best - 2 || (n == 0 && isfinite(value))) {
       best = value;
       best_count = n;
@@ -203,7 +202,7 @@ static dea_status hold_out(struct work *w, const struct dea_fit_model *model, si
     most = fmax(most, fabs(series->stress_Pa[i]));
   }
   for (size_t i = from; i < to && status == DEA_OK; i++) {
-    const double std = isnan(series->std_Pa[i]) ? w->fit->scatter_Pa : series->std_Pa[i];
+    const double std = isnan(series->std_Pa[i]) ? w->fit->core.scatter : series->std_Pa[i];
     const double off = stress[i] - series->stress_Pa[i];
     *squares += off * off / (std * std);
     *shares += off * off / (most * most);
@@ -230,7 +229,8 @@ static dea_status hold_out_all(struct work *w, const struct dea_fit_model *model
                                &shares, &count));
     }
   }
-  candidate->held_out = sqrt(squares / (double)count) * (w->fit->scale_known ? 1 : SCATTER_SHARE);
+  candidate->held_out =
+      sqrt(squares / (double)count) * (w->fit->core.scale_known ? 1 : SCATTER_SHARE);
   candidate->held_out_share = sqrt(shares / (double)count);
   return DEA_OK;
 }
@@ -293,7 +293,7 @@ static dea_status try_law(struct work *w, const struct dea_label *name, struct d
   candidate->branch_count = model->branch_count;
   DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, model, &rows, &found));
   candidate->chi2 = found.chi2;
-  candidate->aicc = criterion(&found, candidate->free_count, fit->scale_known);
+  candidate->aicc = criterion(&found, candidate->free_count, fit->core.scale_known);
   dea_fit_model_material(model, found.p, NULL, material);
   dea_lsq_free(&found);
   DEA_TRY(w->ctx, check_rest(w, material));
@@ -365,43 +365,28 @@ static void find_spreads(struct work *w)
 
 /* ---- the law that was chosen ---- */
 
-static dea_status find_statistics(struct work *w)
-{
-  struct dea_fit *fit = w->fit;
-  struct dea_lsq_group groups[DEA_FIT_TESTS_MAX];
-  size_t count = 0, at = 0;
-  dea_lsq_statistics_free(&fit->statistics);
-  for (size_t s = 0; s < fit->series_count; s++) {
-    if (dea_fit_series_used(&fit->series[s])) {
-      groups[count++] = (struct dea_lsq_group){at, fit->series[s].rows};
-      at += fit->series[s].rows;
-    }
-  }
-  DEA_TRY(w->ctx, dea_lsq_statistics_find(w->ctx, &fit->least_squares, groups, count,
-                                          fit->scale_known, &fit->statistics));
-  w->rows = at;
-  return DEA_OK;
-}
-
-static dea_status solve_round(void *user, const struct dea_lsq_statistics **found)
+/* The law that was chosen over all rows. */
+static dea_status solve_chosen(void *user)
 {
   struct work *w = user;
   const struct dea_fit_rows rows = all_rows(w->fit);
-  dea_lsq_free(&w->fit->least_squares);
-  DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, &w->fit->model, &rows, &w->fit->least_squares));
-  *found = &w->fit->statistics;
-  return find_statistics(w);
+  dea_lsq_free(&w->fit->core.least_squares);
+  return dea_fit_model_solve(w->ctx, &w->fit->model, &rows, &w->fit->core.least_squares);
 }
 
-/* The law that was chosen over all rows. */
-static dea_status solve_chosen(struct work *w)
+/* Parameters and rows of the law that was chosen. */
+static void fill_core(struct dea_fit *fit)
 {
-  struct dea_fit *fit = w->fit;
-  bool prior = false;
-  for (size_t j = 0; j < fit->model.count; j++) {
-    prior = prior || !isnan(fit->model.params[j].prior);
+  struct dea_fit_core *core = &fit->core;
+  size_t at = 0;
+  core->param_count = fit->model.count;
+  memcpy(core->params, fit->model.params, core->param_count * sizeof *core->params);
+  for (size_t s = 0; s < fit->series_count; s++) {
+    if (dea_fit_series_used(&fit->series[s])) {
+      core->groups[core->group_count++] = (struct dea_lsq_group){at, fit->series[s].rows};
+      at += fit->series[s].rows;
+    }
   }
-  return dea_lsq_weigh(prior && !fit->scale_known, &fit->scatter_Pa, solve_round, w);
 }
 
 /* p moved along the directions that are not determined to where it is nearest to the start, in
@@ -409,7 +394,7 @@ static dea_status solve_chosen(struct work *w)
 static bool draw_near(const struct dea_fit *fit, double *p)
 {
   enum { SWEEPS = 20 }; // directions may share parameters
-  const struct dea_lsq_statistics *s = &fit->statistics;
+  const struct dea_lsq_statistics *s = &fit->core.statistics;
   const struct dea_fit_param *params = fit->model.params;
   bool open = false, within = true;
   for (size_t k = 0; k < SWEEPS * s->active; k++) {
@@ -439,7 +424,7 @@ static bool draw_near(const struct dea_fit *fit, double *p)
 static dea_status settle_open(struct work *w)
 {
   struct dea_fit *fit = w->fit;
-  struct dea_lsq_fit *found = &fit->least_squares;
+  struct dea_lsq_fit *found = &fit->core.least_squares;
   const struct dea_fit_rows rows = all_rows(fit);
   struct dea_arena memory = {.ctx = w->ctx};
   struct dea_lsq_problem problem;
@@ -460,47 +445,11 @@ static dea_status settle_open(struct work *w)
       memcpy(found->r, r, found->rows * sizeof *r);
       found->chi2 = chi2;
       status = dea_lsq_jacobian(w->ctx, &problem, p, found->J);
-      status = status == DEA_OK ? find_statistics(w) : status;
+      status = status == DEA_OK ? dea_fit_core_statistics(w->ctx, &fit->core) : status;
     }
   }
   dea_arena_free(&memory);
   return status;
-}
-
-/* Root mean square misfit of the rows that were fitted, in the unit of the residuals. */
-static double misfit(const struct work *w)
-{
-  double squares = 0;
-  for (size_t i = 0; i < w->rows; i++) {
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a fit that was found has residuals
-    squares += w->fit->least_squares.r[i] * w->fit->least_squares.r[i];
-  }
-  return sqrt(squares / (double)w->rows);
-}
-
-dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
-                           const struct dea_lsq_fit *fit,
-                           const struct dea_lsq_statistics *statistics, size_t j, bool logarithmic,
-                           bool all, struct dea_fit_value *value)
-{
-  const double std = statistics->std[j], naive = statistics->naive_std[j];
-  if (!(std > 0) || isinf(std)) {
-    return DEA_OK;
-  }
-  const double unit = (std / naive) * (std / naive); // correlated, widened
-  for (int sign = -1; sign <= 1; sign += 2) {
-    double from[DEA_LSQ_PARAMS_MAX], growth;
-    memcpy(from, fit->p, fit->params * sizeof *from);
-    DEA_TRY(ctx, dea_lsq_growth(ctx, problem, fit, j, fit->p[j] + sign * std, unit, from, &growth));
-    value->bends = value->bends || !(fabs(growth) < 0.15);
-  }
-  if (value->bends || all) {
-    struct dea_lsq_interval interval;
-    DEA_TRY(ctx, dea_lsq_profile(ctx, problem, fit, j, 1, unit, 0.7 * std, &interval));
-    value->low = logarithmic ? exp(interval.low) : interval.low;
-    value->high = logarithmic ? exp(interval.high) : interval.high;
-  }
-  return DEA_OK;
 }
 
 static dea_status fill_values(struct work *w, bool all_profiles)
@@ -509,20 +458,7 @@ static dea_status fill_values(struct work *w, bool all_profiles)
   const struct dea_fit_rows rows = all_rows(fit);
   struct dea_lsq_problem problem;
   DEA_TRY(w->ctx, dea_fit_model_problem(&fit->memory, &fit->model, &rows, &problem));
-  for (size_t j = 0; j < fit->model.count; j++) {
-    const struct dea_fit_param *param = &fit->model.params[j];
-    const double p = fit->least_squares.p[j], std = fit->statistics.std[j];
-    fit->values[j] = (struct dea_fit_value){.value = param->logarithmic ? exp(p) : p,
-                                            .std = param->logarithmic ? exp(p) * std : std,
-                                            .low = NAN,
-                                            .high = NAN,
-                                            .fixed = param->fixed,
-                                            .at_bound = fit->least_squares.at_bound[j]};
-    dea_progress(w->ctx, "profiles", j, fit->model.count);
-    DEA_TRY(w->ctx, dea_fit_profile(w->ctx, &problem, &fit->least_squares, &fit->statistics, j,
-                                    param->logarithmic, all_profiles, &fit->values[j]));
-  }
-  return DEA_OK;
+  return dea_fit_core_values(w->ctx, &problem, true, all_profiles, &fit->core);
 }
 
 /* Stress of a test at the parameters found, and its standard uncertainty. */
@@ -537,8 +473,9 @@ static dea_status fill_curve(struct work *w, const struct dea_fit_series *series
   curve->std_Pa = dea_arena_alloc(&fit->memory, m, sizeof *curve->std_Pa);
   double *J = dea_arena_alloc(&fit->memory, m * n, sizeof *J);
   DEA_TRY(w->ctx, dea_fit_model_stress(&fit->memory, &fit->model, series, &problem));
-  dea_status status = problem.residual(problem.user, fit->least_squares.p, curve->stress_Pa);
-  status = status == DEA_OK ? dea_lsq_jacobian(w->ctx, &problem, fit->least_squares.p, J) : status;
+  dea_status status = problem.residual(problem.user, fit->core.least_squares.p, curve->stress_Pa);
+  status =
+      status == DEA_OK ? dea_lsq_jacobian(w->ctx, &problem, fit->core.least_squares.p, J) : status;
   if (status == DEA_E_DOMAIN) {
     return dea_fail(w->ctx, status, "'%.60s' goes beyond the domain of the law that was found",
                     series->test->name.text);
@@ -550,7 +487,7 @@ static dea_status fill_curve(struct work *w, const struct dea_fit_series *series
     for (size_t j = 0; j < n; j++) {
       slope[j] = J[j * m + i];
     }
-    curve->std_Pa[i] = dea_lsq_std_of(&fit->statistics, slope);
+    curve->std_Pa[i] = dea_lsq_std_of(&fit->core.statistics, slope);
     const double off = curve->stress_Pa[i] - series->stress_Pa[i];
     squares += off * off;
     curve->largest = fmax(curve->largest, fabs(off / series->stress_Pa[i]));
@@ -569,8 +506,8 @@ static dea_status fill_curves(struct work *w)
     DEA_TRY(w->ctx, fill_curve(w, &fit->series[s], &fit->curves[s]));
     fit->curves[s].lag = fit->curves[s].effective = NAN;
     if (dea_fit_series_used(&fit->series[s])) {
-      fit->curves[s].lag = fit->statistics.lag[g];
-      fit->curves[s].effective = fit->statistics.effective[g++];
+      fit->curves[s].lag = fit->core.statistics.lag[g];
+      fit->curves[s].effective = fit->core.statistics.effective[g++];
     }
   }
   return DEA_OK;
@@ -581,63 +518,46 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   struct dea_fit *fit = w->fit;
   DEA_TRY(w->ctx, check_uncertainties(w));
   DEA_TRY(w->ctx, choose_law(w));
-  DEA_TRY(w->ctx, solve_chosen(w));
+  fill_core(fit);
+  DEA_TRY(w->ctx, dea_fit_core_solve(w->ctx, &fit->core, solve_chosen, w));
   DEA_TRY(w->ctx, settle_open(w));
-  dea_fit_model_material(&fit->model, fit->least_squares.p, NULL, &w->materials[fit->chosen]);
+  dea_fit_model_material(&fit->model, fit->core.least_squares.p, NULL, &w->materials[fit->chosen]);
   DEA_TRY(w->ctx, check_rest(w, &w->materials[fit->chosen]));
   DEA_TRY(w->ctx, fill_values(w, options->profile));
   DEA_TRY(w->ctx, fill_curves(w));
-  fit->weak_count = dea_fit_identify_weak(fit->model.params, &fit->statistics, "tests", fit->weak);
+  dea_fit_identify_weak(&fit->core, "tests");
   dea_fit_identify_stability(fit);
   find_spreads(w);
   DEA_TRY(w->ctx, dea_fit_identify_next(w->ctx, fit));
-  fit->scatter_Pa *= fit->scale_known ? 1 : misfit(w); // so far the unit of the residuals
+  dea_fit_core_scatter(&fit->core);
   return DEA_OK;
 }
 
 dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
                        const struct dea_fit_series *series, size_t series_count,
-                       const struct dea_fit_options *options, struct dea_fit **out)
+                       const struct dea_fit_options *options, struct dea_fit *fit)
 {
-  *out = NULL;
-  struct dea_fit *fit = dea_alloc(ctx, 1, sizeof *fit);
-  DEA_TRY_MEMORY(fit != NULL);
+  struct work w = {.ctx = ctx, .fit = fit};
   *fit = (struct dea_fit){
       .file = file, .series = series, .series_count = series_count, .memory = {.ctx = ctx}};
-  struct work w = {.ctx = ctx, .fit = fit};
-  dea_status status = dea_refuse_argument(ctx, file->tests[0].file.location, run(&w, options));
-  if (status != DEA_OK) {
-    dea_fit_destroy(ctx, fit);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = fit;
-  return DEA_OK;
+  return dea_refuse_argument(ctx, file->tests[0].file.location, run(&w, options));
 }
 
 dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file,
-                            const struct dea_fit_options *options, struct dea_fit **out)
+                            const struct dea_fit_options *options, struct dea_fit *fit)
 {
   struct dea_arena tests = {.ctx = ctx};
   struct dea_fit_series *series;
-  *out = NULL;
   dea_status status = dea_fit_series_read(&tests, file, &series);
   status =
-      status == DEA_OK ? dea_fit_run(ctx, file, series, file->test_count, options, out) : status;
-  if (status != DEA_OK) {
-    dea_arena_free(&tests);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  (*out)->tests = tests;
-  return DEA_OK;
+      status == DEA_OK ? dea_fit_run(ctx, file, series, file->test_count, options, fit) : status;
+  fit->tests = tests;
+  return DEA_CHAIN(ctx, status);
 }
 
-void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit)
+void dea_fit_free(struct dea_fit *fit)
 {
-  if (fit != NULL) {
-    dea_lsq_statistics_free(&fit->statistics);
-    dea_lsq_free(&fit->least_squares);
-    dea_arena_free(&fit->memory);
-    dea_arena_free(&fit->tests);
-    dea_free(ctx, fit);
-  }
+  dea_fit_core_free(&fit->core);
+  dea_arena_free(&fit->memory);
+  dea_arena_free(&fit->tests);
 }

@@ -6,20 +6,11 @@
 #include "base/text.h"
 #include "identify/fit_model.h"
 
-enum { DEA_FIT_NEXT_MAX = 5, DEA_FIT_WEAK_MAX = 4, DEA_FIT_WEAK_SIZE = 400 };
 /* A law that is stable over the range of the tests is taken before one that is not, unless that one
  * foretells held-out tests so many times better; and laws that foretell them so many times as badly
  * at most are compared where no test was made. */
 #define DEA_FIT_STABLE_FACTOR 2.0
 enum { DEA_FIT_WEAK_CONDITION = 1000 }; // singular values that far below the largest are told
-
-/* A parameter as found, in its unit. */
-struct dea_fit_value {
-  double value;
-  double std;       // standard uncertainty; NAN: fixed or at a bound, INFINITY: not determined
-  double low, high; // 68 % interval by its profile, NAN: not computed, infinite: open
-  bool fixed, at_bound, bends; // bends: the profile is not that of the normal form
-};
 
 /* A law of the list. */
 struct dea_fit_candidate {
@@ -63,12 +54,6 @@ struct dea_fit_spread {
   double share; // largest difference from the law that was taken, over its stress
 };
 
-/* What one more test would do. */
-struct dea_fit_next {
-  char what[80];
-  double shrink; // factor on the mean error bar (geometric mean over the free parameters)
-};
-
 struct dea_fit {
   const struct dea_fit_file *file; // lent
   const struct dea_fit_series *series;
@@ -76,20 +61,12 @@ struct dea_fit {
   struct dea_fit_candidate candidates[DEA_FIT_LAWS_MAX];
   size_t candidate_count, chosen;
   struct dea_fit_model model;
-  struct dea_fit_value values[DEA_LSQ_PARAMS_MAX];
-  struct dea_lsq_fit least_squares;
-  struct dea_lsq_statistics statistics;
-  bool scale_known;                               // uncertainties were given
-  double scatter_Pa;                              // root mean square misfit where they were not
-  char weak[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE]; // combinations that are not told apart, in words
-  size_t weak_count;
+  struct dea_fit_core core;     // of the model
   struct dea_fit_curve *curves; // [series_count]
   struct dea_fit_stability stability[DEA_COUPON_MODES];
   struct dea_fit_spread
       spreads[DEA_COUPON_MODES]; // of modes without a test, where there is another
   size_t spread_count;
-  struct dea_fit_next next[DEA_FIT_NEXT_MAX]; // the best first
-  size_t next_count;
   double stretch_min, stretch_max, I1_max; // of the rows that were fitted
   struct dea_arena memory, tests;          // tests: the series, where they were read from the file
 };
@@ -99,28 +76,18 @@ struct dea_fit_options {
 };
 
 /* Fits; file and series: lent for as long as the result. Status as the model and the least squares
- * give it; DEA_E_DESIGN after findings. out: owned by the caller, NULL on failure. */
+ * give it; DEA_E_DESIGN after findings. fit: freed by the caller, also after a failure. */
 dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
                        const struct dea_fit_series *series, size_t series_count,
-                       const struct dea_fit_options *options, struct dea_fit **out);
+                       const struct dea_fit_options *options, struct dea_fit *fit);
 /* The same of the tests that the file names, in CSV files from its folder; what is wrong with them
- * becomes findings with their places, DEA_E_IO then, or DEA_E_DESIGN. */
+ * becomes findings with their places, DEA_E_IO then, or DEA_E_DESIGN. fit: zeroed before. */
 dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file,
-                            const struct dea_fit_options *options, struct dea_fit **out);
-void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit);
+                            const struct dea_fit_options *options, struct dea_fit *fit);
+void dea_fit_free(struct dea_fit *fit);
 
 // Parts -------------------------------------------------------------------------------------------
 
-/* The interval of parameter j by its profile, where the normal form is poor or for `all`: sets
- * bends, low and high of the value. */
-dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
-                           const struct dea_lsq_fit *fit,
-                           const struct dea_lsq_statistics *statistics, size_t j, bool logarithmic,
-                           bool all, struct dea_fit_value *value);
-/* Combinations of parameters that the measurements (`what`: "tests") do not hold, or hardly, in
- * words. Returns their number. */
-size_t dea_fit_identify_weak(const struct dea_fit_param *params, const struct dea_lsq_statistics *s,
-                             const char *what, char out[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE]);
 /* Where the law ends to be stable, and the next test. */
 void dea_fit_identify_stability(struct dea_fit *fit);
 /* Stretch of a mode from which a material is not stable, looked for up to `to`; NAN: it is. */

@@ -20,14 +20,19 @@ const char *const dea_fit_kind_names[DEA_FIT_KINDS + 1] = {
     "uniaxial", "planar", "equibiaxial", "relaxation", "cyclic", "creep", NULL};
 const char *const dea_fit_use_names[] = {"fit", "check", "predict", NULL};
 
-const struct dea_fit_column_type dea_fit_columns[DEA_FIT_COLUMNS] = {
-    [DEA_FIT_TIME] = {"time", "s", "time (s)"},
-    [DEA_FIT_STRETCH] = {"stretch", "1", "stretch"},
-    [DEA_FIT_DISPLACEMENT] = {"displacement", "m", "displacement (mm)"},
-    [DEA_FIT_STRESS] = {"stress", "Pa", "stress (kPa)"},
-    [DEA_FIT_FORCE] = {"force", "N", "force (N)"},
-    [DEA_FIT_STRESS_STD] = {"stress_std", "Pa", "stress std (kPa)"},
-    [DEA_FIT_FORCE_STD] = {"force_std", "N", "force std (N)"},
+/* Name in a fit file, unit, an example of a title, and the other column that says the same
+ * (DEA_FIT_COLUMNS: there is none). */
+static const struct column_type {
+  const char *key, *unit, *example;
+  enum dea_fit_column twin;
+} types[DEA_FIT_COLUMNS] = {
+    [DEA_FIT_TIME] = {"time", "s", "time (s)", DEA_FIT_COLUMNS},
+    [DEA_FIT_STRETCH] = {"stretch", "1", "stretch", DEA_FIT_DISPLACEMENT},
+    [DEA_FIT_DISPLACEMENT] = {"displacement", "m", "displacement (mm)", DEA_FIT_STRETCH},
+    [DEA_FIT_STRESS] = {"stress", "Pa", "stress (kPa)", DEA_FIT_FORCE},
+    [DEA_FIT_FORCE] = {"force", "N", "force (N)", DEA_FIT_STRESS},
+    [DEA_FIT_STRESS_STD] = {"stress_std", "Pa", "stress std (kPa)", DEA_FIT_FORCE_STD},
+    [DEA_FIT_FORCE_STD] = {"force_std", "N", "force std (N)", DEA_FIT_STRESS_STD},
 };
 
 #define COLUMN_FIELD(column, word, meaning)                                                        \
@@ -124,8 +129,8 @@ static const struct dea_field fit_fields[] = {
         .default_text = "none"),
     DEA_NUMBER_ROW("branch_times", AT(branch_s), "s", "[1 s, 10 s, 100 s]",
                    "fixed relaxation times, a branch each", .above_min = true, .max = 1e12,
-                   .list_max = DEA_BRANCHES_MAX, .element_size = sizeof(struct dea_quantity),
-                   .count_offset = AT(branch_time_count), .absent_text = "free"),
+                   .absent_text = "free",
+                   DEA_LIST(0, DEA_BRANCHES_MAX, struct dea_quantity, AT(branch_time_count))),
     DEA_FIELD_ROW(RECORD, "tests", AT(tests), .record = DEA_ROWS(test_fields), .required = true,
                   .doc = "measurements of the material",
                   .example = "[{name: tension, kind: uniaxial, file: tension.csv}]",
@@ -233,8 +238,7 @@ static dea_status read_stretch(struct work *w)
           w->test->name.text);
   } else if (stretch == NULL && displacement == NULL && !held) {
     FOUND(w, w->test->file.location, "'%.80s' has no column '%s', 'strain (%%)' or '%s'",
-          w->raw->file, dea_fit_columns[DEA_FIT_STRETCH].example,
-          dea_fit_columns[DEA_FIT_DISPLACEMENT].example);
+          w->raw->file, types[DEA_FIT_STRETCH].example, types[DEA_FIT_DISPLACEMENT].example);
   }
   for (size_t i = 0; i < w->raw->rows && w->errors == 0; i++) {
     w->out->stretch[i] = stretch != NULL        ? stretch[i]
@@ -267,8 +271,7 @@ static dea_status read_stress(struct work *w)
     FOUND(w, test->file.location,
           "'%.80s' has no column '%s' or '%s'; a true stress is to be divided by the stretch, to "
           "force over the unstretched section",
-          w->raw->file, dea_fit_columns[DEA_FIT_STRESS].example,
-          dea_fit_columns[DEA_FIT_FORCE].example);
+          w->raw->file, types[DEA_FIT_STRESS].example, types[DEA_FIT_FORCE].example);
   }
   const bool known = test->relative.origin != DEA_ABSENT || test->absolute_Pa.origin != DEA_ABSENT;
   if (known && has_std_column(w)) {
@@ -323,7 +326,7 @@ static dea_status read_time(struct work *w)
   const bool held = test->kind.value == DEA_FIT_RELAXATION || test->kind.value == DEA_FIT_CREEP;
   if (time == NULL && (held || (test->kind.value == DEA_FIT_CYCLIC && isnan(rate)))) {
     FOUND(w, test->file.location, "'%.80s' has no column '%s'%s", w->raw->file,
-          dea_fit_columns[DEA_FIT_TIME].example, held ? "" : ", and the test no rate");
+          types[DEA_FIT_TIME].example, held ? "" : ", and the test no rate");
     return DEA_OK;
   }
   if (time == NULL && isnan(rate)) {
@@ -475,6 +478,7 @@ static void keep_row(struct dea_fit_series *out, size_t to, size_t from)
   out->std_Pa[to] = out->std_Pa[from];
   if (out->time_s != NULL) {
     out->time_s[to] = out->time_s[from];
+    out->coupon.node_of_row[to] = out->coupon.node_of_row[from];
   }
 }
 
@@ -538,15 +542,6 @@ static dea_status check_count(struct work *w)
 
 /* ---- all of it ---- */
 
-static void choose_mode(struct work *w)
-{
-  const int kind = w->test->kind.value;
-  w->out->coupon.mode = kind == DEA_FIT_UNIAXIAL      ? DEA_UNIAXIAL
-                        : kind == DEA_FIT_PLANAR      ? DEA_PLANAR
-                        : kind == DEA_FIT_EQUIBIAXIAL ? DEA_EQUIBIAXIAL
-                                                      : (enum dea_coupon_mode)w->test->mode.value;
-}
-
 static dea_status build(struct dea_arena *arena, struct work *w)
 {
   struct dea_fit_series *out = w->out;
@@ -568,20 +563,12 @@ static dea_status build(struct dea_arena *arena, struct work *w)
   DEA_TRY(w->ctx, check_reach(w));
   if (w->errors == 0) {
     // the way goes through all rows, also those that are left out
-    struct dea_coupon path = {
-        .mode = out->coupon.mode, .rows = w->raw->rows, .stretch = out->stretch};
-    if (out->time_s != NULL) {
-      DEA_TRY(w->ctx, dea_coupon_follow(arena, out->time_s, ramp, &path));
-    }
-    out->coupon = path;
+    out->coupon.rows = w->raw->rows;
+    out->coupon.stretch = out->stretch;
+    DEA_TRY(w->ctx, out->time_s != NULL ? dea_coupon_follow(arena, out->time_s, ramp, &out->coupon)
+                                        : DEA_OK);
     DEA_TRY(w->ctx, cut(w));
     DEA_TRY(w->ctx, check_count(w));
-    for (size_t i = 0, k = 0; i < out->rows && path.node_count > 0; i++) {
-      while (w->raw->line[k] != out->line[i]) {
-        k++;
-      }
-      out->coupon.node_of_row[i] = path.node_of_row[k];
-    }
     out->coupon.rows = out->rows;
   }
   return w->errors == 0
@@ -602,33 +589,19 @@ static dea_status build_series(struct dea_arena *arena, const struct dea_fit_tes
   out->std_Pa = dea_arena_alloc(arena, raw->rows, sizeof *out->std_Pa);
   DEA_TRY(arena->ctx, dea_arena_status(arena));
   memcpy(out->line, raw->line, raw->rows * sizeof *out->line);
-  choose_mode(&w);
+  const int kind = test->kind.value; // the first say how the piece is held themselves
+  out->coupon.mode = (enum dea_coupon_mode)(kind <= DEA_FIT_EQUIBIAXIAL ? kind : test->mode.value);
   return build(arena, &w);
 }
 
 /* ---- the files ---- */
-
-/* The other column that says the same; -1: there is none. */
-static int twin_of(int column)
-{
-  static const int twins[DEA_FIT_COLUMNS] = {
-      [DEA_FIT_TIME] = -1,
-      [DEA_FIT_STRETCH] = DEA_FIT_DISPLACEMENT,
-      [DEA_FIT_DISPLACEMENT] = DEA_FIT_STRETCH,
-      [DEA_FIT_STRESS] = DEA_FIT_FORCE,
-      [DEA_FIT_FORCE] = DEA_FIT_STRESS,
-      [DEA_FIT_STRESS_STD] = DEA_FIT_FORCE_STD,
-      [DEA_FIT_FORCE_STD] = DEA_FIT_STRESS_STD,
-  };
-  return twins[column];
-}
 
 /* What a test wants of its file, by the titles that it names. */
 static void want(const struct dea_fit_test *test, char names[][DEA_CSV_FIELD_MAX],
                  struct dea_csv_wanted *wanted)
 {
   for (int c = 0; c < DEA_FIT_COLUMNS; c++) {
-    const struct dea_fit_column_type *type = &dea_fit_columns[c];
+    const struct column_type *type = &types[c];
     const char *title = test->columns[c].text;
     char unit[DEA_CSV_FIELD_MAX];
     dea_csv_split_title(title[0] != '\0' ? title : type->key, names[c], unit);
@@ -638,9 +611,10 @@ static void want(const struct dea_fit_test *test, char names[][DEA_CSV_FIELD_MAX
                                         .needed = title[0] != '\0',
                                         .filled = true,
                                         .strain = c == DEA_FIT_STRETCH};
-    const int twin = twin_of(c); // another title for the same was chosen
-    if (title[0] == '\0' && twin >= 0 && test->columns[twin].text[0] != '\0') {
-      wanted[c].name = " "; // none has that
+    const bool has_twin =
+        type->twin != DEA_FIT_COLUMNS && test->columns[type->twin].text[0] != '\0';
+    if (title[0] == '\0' && has_twin) { // another title for the same was chosen
+      wanted[c].name = " ";             // none has that
       wanted[c].strain = false;
     }
   }

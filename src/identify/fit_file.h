@@ -34,11 +34,6 @@ enum dea_fit_column {
   DEA_FIT_FORCE_STD,
   DEA_FIT_COLUMNS
 };
-/* Name in a fit file, unit and an example of a title. */
-extern const struct dea_fit_column_type {
-  const char *key, *unit, *example;
-} dea_fit_columns[DEA_FIT_COLUMNS];
-
 /* A test as written. */
 struct dea_fit_test {
   struct dea_label name, file;

@@ -85,10 +85,7 @@ dea_status dea_fit_head_read(struct dea_context *ctx, const char *file,
     status = head->file != NULL ? read_bytes(ctx, bytes, length, form, head) : DEA_E_MEMORY;
   }
   dea_free(ctx, bytes);
-  if (status != DEA_OK) {
-    dea_fit_head_destroy(ctx, head);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_fit_head_destroy(ctx, head));
   *out = head;
   return DEA_OK;
 }
@@ -99,31 +96,5 @@ void dea_fit_head_destroy(struct dea_context *ctx, void *fit)
   if (head != NULL) {
     dea_yaml_destroy(ctx, head->document);
     dea_free(ctx, head);
-  }
-}
-
-void *dea_fit_frame_create(struct dea_context *ctx, size_t size, const void *file,
-                           dea_status (*run)(void *fit, const void *file), dea_status *status)
-{
-  struct dea_arena *fit = dea_alloc(ctx, 1, size);
-  if (fit == NULL) {
-    *status = DEA_E_MEMORY;
-    return NULL;
-  }
-  fit->ctx = ctx;
-  *status = run(fit, file);
-  if (*status != DEA_OK) {
-    dea_fit_frame_destroy(ctx, fit);
-    *status = dea_fail_chain(ctx, *status, __func__, __FILE__, __LINE__);
-    return NULL;
-  }
-  return fit;
-}
-
-void dea_fit_frame_destroy(struct dea_context *ctx, void *fit)
-{
-  if (fit != NULL) {
-    dea_arena_free(fit);
-    dea_free(ctx, fit);
   }
 }

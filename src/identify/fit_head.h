@@ -1,7 +1,6 @@
 /* What the fit files of materials and of devices have in common, and how both are read. */
 #pragma once
 
-#include "base/arena.h"
 #include "base/schema.h"
 
 #include <stddef.h>
@@ -65,23 +64,3 @@ void dea_fit_head_destroy(struct dea_context *ctx, void *fit);
  * name; what: "test". */
 dea_status dea_fit_names_check(struct dea_context *ctx, const void *items, size_t count,
                                size_t size, const char *what);
-
-/* A fit of films or specimens, of `size` bytes: its struct begins with the arena of all that it
- * finds, and is zero otherwise when `run` fills it. file: handed on. NULL: it failed, *status. */
-void *dea_fit_frame_create(struct dea_context *ctx, size_t size, const void *file,
-                           dea_status (*run)(void *fit, const void *file), dea_status *status);
-/* NULL is fine. */
-void dea_fit_frame_destroy(struct dea_context *ctx, void *fit);
-/* The functions dea_NAME_fit_run and dea_NAME_fit_destroy of such a struct dea_NAME_fit. */
-#define DEA_FIT_FRAME(name, run)                                                                   \
-  dea_status dea_##name##_fit_run(struct dea_context *ctx, const struct dea_##name##_file *file,   \
-                                  struct dea_##name##_fit **out)                                   \
-  {                                                                                                \
-    dea_status status;                                                                             \
-    *out = dea_fit_frame_create(ctx, sizeof **out, file, run, &status);                            \
-    return status;                                                                                 \
-  }                                                                                                \
-  void dea_##name##_fit_destroy(struct dea_context *ctx, struct dea_##name##_fit *fit)             \
-  {                                                                                                \
-    dea_fit_frame_destroy(ctx, fit);                                                               \
-  }

@@ -230,7 +230,6 @@ dea_status dea_fit_model_create(struct dea_context *ctx, const struct dea_fit_fi
       out->coldest_K = fmin(out->coldest_K, dea_fit_temperature_K(file, series[s].test));
     }
   }
-  snprintf(out->name, sizeof out->name, "%.63s", name->text);
   if (out->law == NULL || out->law->anisotropic || out->law->compressible != NULL) {
     DEA_TRY(ctx, unknown_law(ctx, name, out->law));
     return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' cannot be fitted", name->text);
@@ -393,12 +392,7 @@ static dea_status residual(void *user, const double *p, double *r)
       }
     }
   }
-  for (size_t j = 0; j < w->model->count; j++) {
-    const struct dea_fit_param *param = &w->model->params[j];
-    if (!isnan(param->prior)) {
-      r[n++] = (p[j] - param->prior) / param->prior_std;
-    }
-  }
+  dea_fit_priors_add(w->model->params, w->model->count, p, r + n);
   return DEA_OK;
 }
 
@@ -411,9 +405,6 @@ static dea_status build_problem(struct dea_arena *arena, const struct dea_fit_mo
     largest = rows->series[s].rows > largest ? rows->series[s].rows : largest;
   }
   struct residuals *w = dea_arena_alloc(arena, 1, sizeof *w);
-  double *low = dea_arena_alloc(arena, model->count, sizeof *low);
-  double *high = dea_arena_alloc(arena, model->count, sizeof *high);
-  double *scale = dea_arena_alloc(arena, model->count, sizeof *scale);
   double *stress = dea_arena_alloc(arena, largest, sizeof *stress);
   struct dea_coupon_shares *shares = dea_arena_alloc(arena, rows->count, sizeof *shares);
   for (size_t s = 0; s < rows->count && shares != NULL; s++) {
@@ -421,18 +412,9 @@ static dea_status build_problem(struct dea_arena *arena, const struct dea_fit_mo
                                                 &shares[s]));
   }
   DEA_TRY_MEMORY(!arena->failed);
-  for (size_t j = 0; j < model->count; j++) {
-    low[j] = model->params[j].low;
-    high[j] = model->params[j].high;
-    scale[j] = model->params[j].scale;
-  }
   *w = (struct residuals){model, rows, shares, stress, bare};
-  *out = (struct dea_lsq_problem){.params = model->count,
-                                  .low = low,
-                                  .high = high,
-                                  .scale = scale,
-                                  .residual = residual,
-                                  .user = w};
+  *out = (struct dea_lsq_problem){
+      .params = model->count, .param = model->params, .residual = residual, .user = w};
   return DEA_OK;
 }
 
@@ -445,9 +427,7 @@ dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_m
       out->rows += is_left_out(rows, s, i) ? 0U : 1U;
     }
   }
-  for (size_t j = 0; j < model->count; j++) {
-    out->rows += isnan(model->params[j].prior) ? 0U : 1U;
-  }
+  out->rows += dea_fit_priors_add(model->params, model->count, NULL, NULL);
   return DEA_OK;
 }
 

@@ -2,25 +2,12 @@
  */
 #pragma once
 
+#include "identify/fit_core.h"
 #include "identify/fit_file.h"
-#include "identify/least_squares.h"
-
-enum { DEA_FIT_PARAM_NAME = 128 };
 
 // J. D. Ferry's constants of many polymers, from which a search begins
 #define DEA_FIT_WLF_C1 8.86
 #define DEA_FIT_WLF_C2_K 101.6
-
-/* A parameter. Numbers are those that the search sees: the logarithm of a relaxation time. */
-struct dea_fit_param {
-  char name[DEA_FIT_PARAM_NAME];    // "c1", "modulus 2", "time 2"
-  const char *unit;                 // of the value: "Pa", "1", "s"
-  bool fixed, logarithmic, started; // started: the file says where the search begins
-  bool locks; // the tests reach where the chains would be fully stretched at `low`
-  double start, low, high, scale;
-  double limit; // of a coefficient of either sign: beyond it, it could only cancel another one
-  double prior, prior_std; // NAN: none
-};
 
 /* What a fit file says of a parameter, over what stands in it already (unit, limits, scale). Errors
  * are findings at the text's places. */
@@ -30,7 +17,6 @@ dea_status dea_fit_param_read(struct dea_context *ctx, const struct dea_fit_para
 /* The first law_count parameters are the law's, in its order; then modulus and time of each branch;
  * then c1 and c2 of the shift, where there is one. */
 struct dea_fit_model {
-  char name[DEA_NAME_SIZE]; // as asked for: "ogden-2"
   const struct dea_law *law;
   struct dea_fit_param params[DEA_LSQ_PARAMS_MAX];
   size_t count, law_count, branch_count;

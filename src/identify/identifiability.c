@@ -45,17 +45,17 @@ static void name_direction(const struct dea_fit_param *params, size_t n, const d
   }
 }
 
-size_t dea_fit_identify_weak(const struct dea_fit_param *params, const struct dea_lsq_statistics *s,
-                             const char *what, char out[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE])
+void dea_fit_identify_weak(struct dea_fit_core *core, const char *what)
 {
-  size_t count = 0;
-  for (size_t k = s->active; k-- > 0 && count < DEA_FIT_WEAK_MAX;) {
+  const struct dea_lsq_statistics *s = &core->statistics;
+  for (size_t k = s->active; k-- > 0 && core->weak_count < DEA_FIT_WEAK_MAX;) {
     if (s->singular[k] * DEA_FIT_WEAK_CONDITION < s->singular[0]) {
-      name_direction(params, s->params, s->direction + k * s->params, dea_lsq_is_open(s, k), what,
-                     out[count++]);
+      char text[DEA_FIT_WEAK_SIZE] = "";
+      name_direction(core->params, s->params, s->direction + k * s->params, dea_lsq_is_open(s, k),
+                     what, text);
+      memcpy(core->weak[core->weak_count++], text, sizeof text);
     }
   }
-  return count;
 }
 
 /* ---- stability ---- */
@@ -76,7 +76,7 @@ double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupo
 void dea_fit_identify_stability(struct dea_fit *fit)
 {
   struct dea_material material;
-  dea_fit_model_material(&fit->model, fit->least_squares.p, NULL, &material);
+  dea_fit_model_material(&fit->model, fit->core.least_squares.p, NULL, &material);
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     struct dea_fit_stability *stability = &fit->stability[mode];
     *stability = (struct dea_fit_stability){.mode = (enum dea_coupon_mode)mode, .to = 1};
@@ -112,7 +112,7 @@ double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1)
   return low;
 }
 
-/* ---- the next test ---- */
+/* ---- the next measurement ---- */
 
 enum { NEXT_ROWS = 10 };
 
@@ -141,11 +141,12 @@ static void add_rows(struct information *to, const double *J, size_t rows, doubl
   }
 }
 
-/* That of a fit whose residuals have the variance that its statistics say. scale: [params], taken
- * where the rows do not notice a parameter. What nothing is known of stays a finite number. */
-static void begin_information(const struct dea_lsq_fit *fit, double variance, const double *scale,
-                              struct information *out)
+/* That of a fit whose residuals have the variance that its statistics say. Scales are taken where
+ * the rows do not notice a parameter. What nothing is known of stays a finite number. */
+static void begin_information(const struct dea_fit_core *core, struct information *out)
 {
+  const struct dea_lsq_fit *fit = &core->least_squares;
+  const double variance = core->statistics.variance;
   *out = (struct information){.count = 0};
   for (size_t j = 0; j < fit->params; j++) {
     if (!fit->held[j] && !fit->at_bound[j]) {
@@ -153,7 +154,7 @@ static void begin_information(const struct dea_lsq_fit *fit, double variance, co
       for (size_t i = 0; i < fit->rows; i++) {
         sum += fit->J[j * fit->rows + i] * fit->J[j * fit->rows + i];
       }
-      out->length[out->count] = sum > 0 ? sqrt(sum) : 1 / scale[j];
+      out->length[out->count] = sum > 0 ? sqrt(sum) : 1 / core->params[j].scale;
       out->active[out->count++] = j;
     }
   }
@@ -180,126 +181,23 @@ static double factor(const struct information *of, double *variance)
   return sum;
 }
 
-/* Adds a measurement to a list [DEA_FIT_NEXT_MAX], the best first. */
-static void add_next(struct dea_fit_next *list, size_t *count, const char *what, double shrink)
+/* Adds a measurement to the list of the next ones. */
+static void add_next(struct dea_fit_core *core, const char *what, double shrink)
 {
-  size_t at = *count;
+  struct dea_fit_next *list = core->next;
+  size_t at = core->next_count;
   while (at > 0 && list[at - 1].shrink > shrink) {
     at--;
   }
   if (at < DEA_FIT_NEXT_MAX) {
-    const size_t kept = *count < DEA_FIT_NEXT_MAX ? *count : DEA_FIT_NEXT_MAX - 1;
+    const size_t kept =
+        core->next_count < DEA_FIT_NEXT_MAX ? core->next_count : DEA_FIT_NEXT_MAX - 1;
     memmove(&list[at + 1], &list[at], (kept - at) * sizeof *list);
     list[at].shrink = shrink;
     snprintf(list[at].what, sizeof list[at].what, "%.79s", what);
-    *count = kept + 1;
+    core->next_count = kept + 1;
   }
 }
-
-/* A test that could be made, with ten rows up to the I1 that the data reach. */
-static dea_status propose(struct dea_arena *arena, const struct dea_fit *fit, int which,
-                          double longest_s, struct dea_fit_series *series, char what[80])
-{
-  double *stretch = dea_arena_alloc(arena, NEXT_ROWS, sizeof *stretch);
-  double *time = dea_arena_alloc(arena, NEXT_ROWS, sizeof *time);
-  DEA_TRY(arena->ctx, dea_arena_status(arena));
-  const bool relaxation = which == DEA_COUPON_MODES;
-  const enum dea_coupon_mode mode = relaxation ? DEA_UNIAXIAL : (enum dea_coupon_mode)which;
-  const double to = dea_fit_stretch_as_far(mode, fit->I1_max);
-  for (size_t i = 0; i < NEXT_ROWS; i++) {
-    const double x = (double)(i + 1) / NEXT_ROWS;
-    stretch[i] = relaxation ? to : 1 + (to - 1) * x;
-    time[i] = longest_s * pow(10, 1 - 4 * (1 - x)); // four decades, to ten times as long
-  }
-  *series = (struct dea_fit_series){.rows = NEXT_ROWS, .stretch = stretch, .time_s = time};
-  series->coupon = (struct dea_coupon){.mode = mode, .rows = NEXT_ROWS, .stretch = stretch};
-  if (relaxation) {
-    snprintf(what, 80, "relaxation at %.3g for %.3g s", to, 10 * longest_s);
-    return dea_coupon_follow(arena, time, time[0], &series->coupon);
-  }
-  snprintf(what, 80, "%s to %.3g, slowly", dea_coupon_mode_names[mode], to);
-  return DEA_OK;
-}
-
-/* Median share of the stress that its standard uncertainty has; a mean does here. */
-static double relative_uncertainty(const struct dea_fit *fit)
-{
-  double sum = 0;
-  size_t count = 0;
-  for (size_t s = 0; s < fit->series_count; s++) {
-    const struct dea_fit_series *series = &fit->series[s];
-    for (size_t i = 0; i < series->rows && dea_fit_series_used(series); i++) {
-      const double std = isnan(series->std_Pa[i]) ? fit->scatter_Pa : series->std_Pa[i];
-      sum += log(std / fabs(series->stress_Pa[i]));
-      count++;
-    }
-  }
-  return exp(sum / (double)count) * sqrt(fit->statistics.variance);
-}
-
-static double longest_time(const struct dea_fit *fit)
-{
-  double most = 0;
-  for (size_t s = 0; s < fit->series_count; s++) {
-    const struct dea_fit_series *series = &fit->series[s];
-    if (series->time_s != NULL && series->rows > 0 && dea_fit_series_used(series)) {
-      most = fmax(most, series->time_s[series->rows - 1]);
-    }
-  }
-  return most;
-}
-
-static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct dea_fit *fit,
-                        int which, const struct information *base)
-{
-  const size_t n = fit->model.count;
-  struct dea_fit_series series;
-  struct dea_lsq_problem problem;
-  char what[80];
-  struct information now = *base;
-  double stress[NEXT_ROWS], variance[DEA_LSQ_PARAMS_MAX];
-  DEA_TRY(ctx, propose(arena, fit, which, longest_time(fit), &series, what));
-  double *J = dea_arena_alloc(arena, NEXT_ROWS * n, sizeof *J);
-  DEA_TRY(ctx, dea_fit_model_stress(arena, &fit->model, &series, &problem));
-  if (problem.residual(problem.user, fit->least_squares.p, stress) != DEA_OK ||
-      dea_lsq_jacobian(ctx, &problem, fit->least_squares.p, J) != DEA_OK) {
-    dea_context_clear(ctx);
-    return DEA_OK; // beyond the law: no advice
-  }
-  const double share = relative_uncertainty(fit);
-  for (size_t k = 0; k < NEXT_ROWS * n; k++) {
-    J[k] /= share * fmax(fabs(stress[k % NEXT_ROWS]), 1e-12);
-  }
-  add_rows(&now, J, NEXT_ROWS, 1);
-  const double gain = factor(&now, variance) - factor(base, variance);
-  add_next(fit->next, &fit->next_count, what, exp(-0.5 * gain / (double)base->count));
-  return DEA_OK;
-}
-
-dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit)
-{
-  struct information base;
-  double scale[DEA_LSQ_PARAMS_MAX];
-  struct dea_arena arena = {.ctx = ctx};
-  dea_status status = DEA_OK;
-  if (fit->statistics.active == 0 || !isfinite(fit->statistics.variance)) {
-    return DEA_OK;
-  }
-  for (size_t j = 0; j < fit->model.count; j++) {
-    scale[j] = fit->model.params[j].scale;
-  }
-  begin_information(&fit->least_squares, fit->statistics.variance, scale, &base);
-  const int last = fit->model.branch_count > 0 ? DEA_COUPON_MODES : DEA_COUPON_MODES - 1;
-  for (int which = 0; which <= last && status == DEA_OK; which++) {
-    status = weigh(ctx, &arena, fit, which, &base);
-  }
-  dea_arena_free(&arena);
-  return status;
-}
-
-/* ---- a device ---- */
-
-static const double close_correlation = 0.95; // of two parameters that are told
 
 static size_t place_of(const struct information *of, size_t param)
 {
@@ -328,6 +226,123 @@ static void help_pairs(struct dea_device_fit *fit, const struct information *bas
   }
 }
 
+/* Adds what each of the measurements would do to the list of the next ones. device: whose pairs it
+ * would part; NULL: a material. */
+static void rank(struct dea_fit_core *core, const struct dea_fit_proposal *list, size_t count,
+                 struct dea_device_fit *device)
+{
+  struct information base, now;
+  double before[DEA_LSQ_PARAMS_MAX], after[DEA_LSQ_PARAMS_MAX];
+  if (core->statistics.active == 0 || !isfinite(core->statistics.variance)) {
+    return;
+  }
+  begin_information(core, &base);
+  const double without = factor(&base, before);
+  for (size_t c = 0; c < count; c++) {
+    now = base;
+    add_rows(&now, list[c].J, list[c].rows, 1);
+    const double gain = factor(&now, after) - without;
+    add_next(core, list[c].what, exp(-0.5 * gain / (double)base.count));
+    if (device != NULL) {
+      help_pairs(device, &base, before, after, list[c].what);
+    }
+  }
+}
+
+/* ---- the next test of a material ---- */
+
+/* Median share of the stress that its standard uncertainty has; a mean does here. */
+static double relative_uncertainty(const struct dea_fit *fit)
+{
+  double sum = 0;
+  size_t count = 0;
+  for (size_t s = 0; s < fit->series_count; s++) {
+    const struct dea_fit_series *series = &fit->series[s];
+    for (size_t i = 0; i < series->rows && dea_fit_series_used(series); i++) {
+      const double std = isnan(series->std_Pa[i]) ? fit->core.scatter : series->std_Pa[i];
+      sum += log(std / fabs(series->stress_Pa[i]));
+      count++;
+    }
+  }
+  return exp(sum / (double)count) * sqrt(fit->core.statistics.variance);
+}
+
+static double longest_time(const struct dea_fit *fit)
+{
+  double most = 0;
+  for (size_t s = 0; s < fit->series_count; s++) {
+    const struct dea_fit_series *series = &fit->series[s];
+    if (series->time_s != NULL && series->rows > 0 && dea_fit_series_used(series)) {
+      most = fmax(most, series->time_s[series->rows - 1]);
+    }
+  }
+  return most;
+}
+
+/* Adds a test that could be made, with ten rows up to the I1 that the data reach. */
+static dea_status propose(struct dea_arena *arena, const struct dea_fit *fit, int which,
+                          struct dea_fit_proposal *list, size_t *count)
+{
+  struct dea_fit_proposal *out = &list[*count];
+  struct dea_lsq_problem problem;
+  double stress[NEXT_ROWS];
+  double *stretch = dea_arena_alloc(arena, NEXT_ROWS, sizeof *stretch);
+  double *time = dea_arena_alloc(arena, NEXT_ROWS, sizeof *time);
+  double *J = dea_arena_alloc(arena, NEXT_ROWS * fit->model.count, sizeof *J);
+  DEA_TRY(arena->ctx, dea_arena_status(arena));
+  const bool relaxation = which == DEA_COUPON_MODES;
+  const enum dea_coupon_mode mode = relaxation ? DEA_UNIAXIAL : (enum dea_coupon_mode)which;
+  const double to = dea_fit_stretch_as_far(mode, fit->I1_max), longest_s = longest_time(fit);
+  for (size_t i = 0; i < NEXT_ROWS; i++) {
+    const double x = (double)(i + 1) / NEXT_ROWS;
+    stretch[i] = relaxation ? to : 1 + (to - 1) * x;
+    time[i] = longest_s * pow(10, 1 - 4 * (1 - x)); // four decades, to ten times as long
+  }
+  struct dea_fit_series series = {.rows = NEXT_ROWS, .stretch = stretch, .time_s = time};
+  series.coupon = (struct dea_coupon){.mode = mode, .rows = NEXT_ROWS, .stretch = stretch};
+  if (relaxation) {
+    snprintf(out->what, sizeof out->what, "relaxation at %.3g for %.3g s", to, 10 * longest_s);
+    DEA_TRY(arena->ctx, dea_coupon_follow(arena, time, time[0], &series.coupon));
+  } else {
+    snprintf(out->what, sizeof out->what, "%s to %.3g, slowly", dea_coupon_mode_names[mode], to);
+  }
+  DEA_TRY(arena->ctx, dea_fit_model_stress(arena, &fit->model, &series, &problem));
+  if (problem.residual(problem.user, fit->core.least_squares.p, stress) != DEA_OK ||
+      dea_lsq_jacobian(arena->ctx, &problem, fit->core.least_squares.p, J) != DEA_OK) {
+    dea_context_clear(arena->ctx);
+    return DEA_OK; // beyond the law: no advice
+  }
+  const double share = relative_uncertainty(fit);
+  for (size_t k = 0; k < NEXT_ROWS * fit->model.count; k++) {
+    J[k] /= share * fmax(fabs(stress[k % NEXT_ROWS]), 1e-12);
+  }
+  out->rows = NEXT_ROWS;
+  out->J = J;
+  ++*count;
+  return DEA_OK;
+}
+
+dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit)
+{
+  struct dea_fit_proposal list[DEA_COUPON_MODES + 1];
+  size_t count = 0;
+  struct dea_arena arena = {.ctx = ctx};
+  dea_status status = DEA_OK;
+  const int last = fit->model.branch_count > 0 ? DEA_COUPON_MODES : DEA_COUPON_MODES - 1;
+  for (int which = 0; which <= last && status == DEA_OK; which++) {
+    status = propose(&arena, fit, which, list, &count);
+  }
+  if (status == DEA_OK) {
+    rank(&fit->core, list, count, NULL);
+  }
+  dea_arena_free(&arena);
+  return status;
+}
+
+/* ---- a device ---- */
+
+static const double close_correlation = 0.95; // of two parameters that are told
+
 static void add_pair(struct dea_device_fit *fit, size_t a, size_t b, double correlation)
 {
   if (fit->pair_count < DEA_DEVICE_PAIRS_MAX) {
@@ -339,7 +354,7 @@ static void add_pair(struct dea_device_fit *fit, size_t a, size_t b, double corr
 /* Pairs that correlate, and parameters that one open direction moves together. */
 static void find_pairs(struct dea_device_fit *fit)
 {
-  const struct dea_lsq_statistics *s = &fit->statistics;
+  const struct dea_lsq_statistics *s = &fit->core.statistics;
   for (size_t a = 0; a < s->params; a++) {
     for (size_t b = 0; b < a; b++) {
       const double correlation = s->correlation[a * s->params + b];
@@ -352,11 +367,11 @@ static void find_pairs(struct dea_device_fit *fit)
     const double *direction = s->direction + k * s->params;
     double largest[2] = {0, 0};
     size_t index[2] = {0, 0};
-    if (s->singular[k] > 1e-9 * s->singular[0]) {
+    if (!dea_lsq_is_open(s, k)) {
       break;
     }
     for (size_t j = 0; j < s->params; j++) {
-      const double share = fabs(direction[j] / fit->params[j].param.scale);
+      const double share = fabs(direction[j] / fit->core.params[j].scale);
       if (share > largest[0]) {
         largest[1] = largest[0];
         index[1] = index[0];
@@ -374,30 +389,10 @@ static void find_pairs(struct dea_device_fit *fit)
   }
 }
 
-void dea_device_identify(struct dea_device_fit *fit, const struct dea_device_candidate *candidates,
+void dea_device_identify(struct dea_device_fit *fit, const struct dea_fit_proposal *list,
                          size_t count)
 {
-  struct information base, now;
-  double scale[DEA_DEVICE_PARAMS_MAX];
-  double before[DEA_DEVICE_PARAMS_MAX], after[DEA_DEVICE_PARAMS_MAX];
-  struct dea_fit_param params[DEA_DEVICE_PARAMS_MAX];
-  for (size_t j = 0; j < fit->param_count; j++) {
-    params[j] = fit->params[j].param;
-    scale[j] = params[j].scale;
-  }
-  fit->weak_count = dea_fit_identify_weak(params, &fit->statistics, "curves", fit->weak);
+  dea_fit_identify_weak(&fit->core, "curves");
   find_pairs(fit);
-  if (fit->statistics.active == 0 || !isfinite(fit->statistics.variance)) {
-    return;
-  }
-  begin_information(&fit->least_squares, fit->statistics.variance, scale, &base);
-  const double without = factor(&base, before);
-  for (size_t c = 0; c < count; c++) {
-    now = base;
-    add_rows(&now, candidates[c].J, candidates[c].rows, 1);
-    const double gain = factor(&now, after) - without;
-    add_next(fit->next, &fit->next_count, candidates[c].what,
-             exp(-0.5 * gain / (double)base.count));
-    help_pairs(fit, &base, before, after, candidates[c].what);
-  }
+  rank(&fit->core, list, count, fit);
 }

@@ -42,7 +42,7 @@ static dea_status differentiate(const struct dea_lsq_problem *problem, double *p
   const size_t m = problem->rows;
   double *plus = work, *minus = work + m;
   const double share = problem->step > 0 ? problem->step : step_share;
-  const double h = fmax(share * problem->scale[j], short_share * fabs(p[j]));
+  const double h = fmax(share * problem->param[j].scale, short_share * fabs(p[j]));
   dea_status status;
   if (problem->second_order) {
     status = difference(problem, p, j, h, work, column);
@@ -62,7 +62,7 @@ static dea_status differentiate(const struct dea_lsq_problem *problem, double *p
   }
   return status != DEA_E_DOMAIN // close to where the model ends
              ? status
-             : difference(problem, p, j, short_share * problem->scale[j], work, column);
+             : difference(problem, p, j, short_share * problem->param[j].scale, work, column);
 }
 
 dea_status dea_lsq_jacobian(struct dea_context *ctx, const struct dea_lsq_problem *problem,
@@ -88,13 +88,12 @@ struct search {
   double p[DEA_LSQ_PARAMS_MAX];
   size_t index[DEA_LSQ_PARAMS_MAX], free_count;
   double *work; // [2 x rows]
-  size_t evaluations;
   dea_status status;
 };
 
 static double clip(const struct dea_lsq_problem *problem, size_t j, double value)
 {
-  return fmin(fmax(value, problem->low[j]), problem->high[j]);
+  return fmin(fmax(value, problem->param[j].low), problem->param[j].high);
 }
 
 static void spread(struct search *s, const double *x)
@@ -112,7 +111,6 @@ static int evaluate(void *user, int m, int n, const double *x, double *r, double
   (void)n;
   spread(s, x);
   if (what == 1) {
-    s->evaluations++;
     dea_status status = s->problem->residual(s->problem->user, s->p, r);
     if (status == DEA_E_DOMAIN) {
       for (int i = 0; i < m; i++) {
@@ -126,7 +124,6 @@ static int evaluate(void *user, int m, int n, const double *x, double *r, double
   for (size_t k = 0; k < s->free_count; k++) {
     const size_t j = s->index[k];
     double *column = J + k * (size_t)stride;
-    s->evaluations += 4;
     if (x[k] != s->p[j]) {
       memset(column, 0, (size_t)m * sizeof *column);
       continue;
@@ -182,8 +179,8 @@ static bool pushes_out(const struct dea_lsq_problem *problem, const struct dea_l
   for (size_t i = 0; i < fit->rows; i++) {
     slope += fit->J[j * fit->rows + i] * fit->r[i];
   }
-  return (fit->p[j] <= problem->low[j] && slope > 0) ||
-         (fit->p[j] >= problem->high[j] && slope < 0);
+  return (fit->p[j] <= problem->param[j].low && slope > 0) ||
+         (fit->p[j] >= problem->param[j].high && slope < 0);
 }
 
 /* r, J and chi2 at fit->p. */
@@ -196,7 +193,6 @@ static dea_status refresh(struct dea_context *ctx, const struct dea_lsq_problem 
     return dea_fail(ctx, status, "the model has no answer at these parameters");
   }
   DEA_TRY(ctx, status);
-  fit->evaluations += 1 + 4 * fit->params;
   fit->chi2 = 0;
   for (size_t i = 0; i < fit->rows; i++) {
     fit->chi2 += fit->r[i] * fit->r[i];
@@ -222,12 +218,11 @@ static dea_status solve(struct dea_context *ctx, const struct dea_lsq_problem *p
     }
     memcpy(s->p, fit->p, fit->params * sizeof *s->p);
     DEA_TRY(ctx, search_minimum(ctx, s, J));
-    fit->evaluations += s->evaluations;
-    s->evaluations = 0;
     memcpy(fit->p, s->p, fit->params * sizeof *s->p);
     DEA_TRY(ctx, refresh(ctx, problem, fit));
     for (size_t j = 0; j < fit->params; j++) { // a bound newly reached, or one to leave
-      bool at = fit->p[j] <= problem->low[j] || fit->p[j] >= problem->high[j];
+      const struct dea_fit_param *param = &problem->param[j];
+      bool at = fit->p[j] <= param->low || fit->p[j] >= param->high;
       again = again || (!fit->held[j] && at && fit->at_bound[j] != pushes_out(problem, fit, j));
     }
     if (!again) {
@@ -237,6 +232,11 @@ static dea_status solve(struct dea_context *ctx, const struct dea_lsq_problem *p
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the parameters at their bounds keep changing");
 }
 
+static bool is_held(const struct dea_lsq_problem *problem, const bool *held, size_t j)
+{
+  return held != NULL ? held[j] : problem->param[j].fixed;
+}
+
 dea_status dea_lsq_solve(struct dea_context *ctx, const struct dea_lsq_problem *problem,
                          const double *start, const bool *held, struct dea_lsq_fit *out)
 {
@@ -244,32 +244,26 @@ dea_status dea_lsq_solve(struct dea_context *ctx, const struct dea_lsq_problem *
   struct search s = {.problem = problem};
   size_t fixed = 0;
   *out = (struct dea_lsq_fit){.rows = m, .params = n, .memory = {.ctx = ctx}};
-  for (size_t j = 0; held != NULL && j < n; j++) {
-    fixed += held[j] ? 1U : 0U;
+  for (size_t j = 0; j < n; j++) {
+    fixed += is_held(problem, held, j) ? 1U : 0U;
   }
   if (n > DEA_LSQ_PARAMS_MAX || m == 0 || m + fixed < n) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "%zu measurements do not determine %zu parameters", m,
                     n - fixed);
   }
-  out->p = dea_arena_alloc(&out->memory, n, sizeof *out->p);
   out->r = dea_arena_alloc(&out->memory, m, sizeof *out->r);
   out->J = dea_arena_alloc(&out->memory, m * n, sizeof *out->J);
-  out->held = dea_arena_alloc(&out->memory, n, sizeof *out->held);
-  out->at_bound = dea_arena_alloc(&out->memory, n, sizeof *out->at_bound);
   double *J = dea_arena_alloc(&out->memory, m * n, sizeof *J);
   s.work = dea_arena_alloc(&out->memory, 2 * m, sizeof *s.work);
   dea_status status = dea_arena_status(&out->memory);
   if (status == DEA_OK) {
     for (size_t j = 0; j < n; j++) {
-      out->held[j] = held != NULL && held[j];
+      out->held[j] = is_held(problem, held, j);
       out->p[j] = out->held[j] ? start[j] : clip(problem, j, start[j]);
     }
     status = solve(ctx, problem, &s, J, out);
   }
-  if (status != DEA_OK) {
-    dea_lsq_free(out);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_lsq_free(out));
   return DEA_OK;
 }
 
@@ -298,7 +292,6 @@ dea_status dea_lsq_growth(struct dea_context *ctx, const struct dea_lsq_problem 
     return DEA_OK;
   }
   DEA_TRY(ctx, status);
-  // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): dea_lsq_solve sets it or fails
   memcpy(from, moved.p, fit->params * sizeof *from);
   *out = sqrt(fmax(0, moved.chi2 - fit->chi2) / unit) - 1;
   dea_lsq_free(&moved);
@@ -313,7 +306,7 @@ static dea_status profile_side(struct dea_context *ctx, const struct dea_lsq_pro
   static const double beyond_model = 1e3; // as far as it goes
   double from[DEA_LSQ_PARAMS_MAX];
   double a = fit->p[j], fa = -1, b = a, fb = -1; // a inside; b beyond once fb > 0
-  const double bound = direction < 0 ? problem->low[j] : problem->high[j];
+  const double bound = direction < 0 ? problem->param[j].low : problem->param[j].high;
   memcpy(from, fit->p, fit->params * sizeof *from);
   for (int k = 0; k < 12 && fb < 0; k++, step *= 2) {
     a = b;
@@ -350,10 +343,9 @@ static dea_status profile_side(struct dea_context *ctx, const struct dea_lsq_pro
 }
 
 dea_status dea_lsq_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
-                           const struct dea_lsq_fit *fit, size_t j, double rise, double variance,
-                           double step, struct dea_lsq_interval *out)
+                           const struct dea_lsq_fit *fit, size_t j, double unit, double step,
+                           double out[2])
 {
-  const double unit = rise * variance;
-  DEA_TRY(ctx, profile_side(ctx, problem, fit, j, -1, step, unit, &out->low));
-  return profile_side(ctx, problem, fit, j, 1, step, unit, &out->high);
+  DEA_TRY(ctx, profile_side(ctx, problem, fit, j, -1, step, unit, &out[0]));
+  return profile_side(ctx, problem, fit, j, 1, step, unit, &out[1]);
 }

@@ -11,16 +11,27 @@
 
 #include "base/arena.h"
 
-enum { DEA_LSQ_PARAMS_MAX = 24 };
+enum { DEA_LSQ_PARAMS_MAX = 24, DEA_FIT_PARAM_NAME = 128 };
+
+/* A parameter. Numbers are those that the search sees: the logarithm of a relaxation time. */
+struct dea_fit_param {
+  char name[DEA_FIT_PARAM_NAME];    // "c1", "modulus 2", "time 2"
+  const char *unit;                 // of the value: "Pa", "1", "s"
+  bool fixed, logarithmic, started; // started: the file says where the search begins
+  bool locks;       // the tests reach where the chains would be fully stretched at `low`
+  double start;     // where the search begins
+  double low, high; // bounds, infinite for none
+  double scale;     // > 0, a change that matters; steps of derivatives are a share of it
+  double limit;     // of a coefficient of either sign: beyond it, it could only cancel another one
+  double prior, prior_std; // NAN: none
+};
 
 struct dea_lsq_problem {
   size_t rows, params;
-  const double *low, *high; // [params] bounds, infinite for none
-  const double
-      *scale;        // [params] > 0, a change that matters; steps of derivatives are a share of it
-  double step;       // that share; 0: 1e-3
-  bool second_order; // derivatives by two evaluations in place of four
-  double tolerance;  // relative, of chi2 and parameters at the end; 0: as far as numbers go
+  const struct dea_fit_param *param; // [params] of which bounds, scale and `fixed` count
+  double step;                       // share of the scale that derivatives step; 0: 1e-3
+  bool second_order;                 // derivatives by two evaluations in place of four
+  double tolerance; // relative, of chi2 and parameters at the end; 0: as far as numbers go
   /* DEA_E_DOMAIN where the model has no answer; any other failure ends the work. */
   dea_status (*residual)(void *user, const double *p, double *r);
   void *user;
@@ -28,13 +39,12 @@ struct dea_lsq_problem {
 
 struct dea_lsq_fit {
   size_t rows, params;
-  double *p;          // [params]
-  double *r;          // [rows] at p
-  double *J;          // [rows x params] at p, also of parameters that are held
-  bool *held;         // [params] fixed by the caller
-  bool *at_bound;     // [params] and chi2 would fall beyond it
-  double chi2;        // sum of squares of r
-  size_t evaluations; // of the residuals
+  double p[DEA_LSQ_PARAMS_MAX];
+  double *r;                         // [rows] at p; NULL: of a fit that was not made
+  double *J;                         // [rows x params] at p, also of parameters that are held
+  bool held[DEA_LSQ_PARAMS_MAX];     // fixed by the caller
+  bool at_bound[DEA_LSQ_PARAMS_MAX]; // and chi2 would fall beyond it
+  double chi2;                       // sum of squares of r
   struct dea_arena memory;
 };
 
@@ -47,9 +57,9 @@ dea_status dea_lsq_jacobian(struct dea_context *ctx, const struct dea_lsq_proble
 
 /* Levenberg and Marquardt (cminpack) with an active set: a parameter that would leave its bounds
  * stays at the bound as long as chi2 falls beyond it. start: [params]; held: [params] those that
- * keep their start, NULL: none. DEA_E_ARGUMENT with fewer rows than free parameters or too many
- * parameters, DEA_E_DOMAIN when the model has no answer at the start, DEA_E_NOT_CONVERGED. out:
- * empty on failure. */
+ * keep their start, NULL: what is fixed. DEA_E_ARGUMENT with fewer rows than free parameters or too
+ * many parameters, DEA_E_DOMAIN when the model has no answer at the start, DEA_E_NOT_CONVERGED.
+ * out: empty on failure. */
 dea_status dea_lsq_solve(struct dea_context *ctx, const struct dea_lsq_problem *problem,
                          const double *start, const bool *held, struct dea_lsq_fit *out);
 void dea_lsq_free(struct dea_lsq_fit *fit);
@@ -64,7 +74,6 @@ struct dea_lsq_group {
 
 struct dea_lsq_statistics {
   size_t params, active; // active: neither held nor at a bound
-  size_t group_count;
   double *std;         // [params] standard uncertainty; NAN of what is not active, INFINITY of what
                        // the rows do not determine
   double *naive_std;   // [params] the same for independent residuals, not widened
@@ -75,8 +84,8 @@ struct dea_lsq_statistics {
    * along which the residuals move by singular[k], the columns' lengths taken off). */
   double *singular, *direction;
   double condition;      // largest over smallest singular value
-  double *lag;           // [group_count] correlation of neighbours, 0 where none is seen
-  double *effective;     // [group_count] rows that independent ones would be
+  double *lag;           // [groups] correlation of neighbours, 0 where none is seen
+  double *effective;     // [groups] rows that independent ones would be
   double effective_rows; // of all groups
   double reduced_chi2;   // chi2 over what is expected of it with these correlations; of the groups
                          // alone where the scale is to be found
@@ -98,25 +107,14 @@ bool dea_lsq_is_open(const struct dea_lsq_statistics *statistics, size_t k);
 double dea_lsq_std_of(const struct dea_lsq_statistics *statistics, const double *slope);
 void dea_lsq_statistics_free(struct dea_lsq_statistics *statistics);
 
-/* A fit whose priors weigh by the scatter of the rows, where that is to be found too (`sought`):
- * solve is called again, each time with the scatter that was found last, until it stays; it begins
- * at a hundredth of the guess in *scatter, so that at first the rows speak and not a prior that
- * they contradict. Otherwise it is called once. */
-dea_status dea_lsq_weigh(bool sought, double *scatter,
-                         dea_status (*solve)(void *user, const struct dea_lsq_statistics **found),
-                         void *user);
-
 /* sqrt of the growth of chi2 over `unit`, less 1, with p_j at `value` and all others fitted anew;
  * NAN where the model has no answer. from: [params] where they begin, moved along. */
 dea_status dea_lsq_growth(struct dea_context *ctx, const struct dea_lsq_problem *problem,
                           const struct dea_lsq_fit *fit, size_t j, double value, double unit,
                           double *from, double *out);
-/* Profile likelihood: the values of parameter j at which chi2, with all others fitted anew, has
- * grown by `rise` times `variance` (1: 68.3 %, 3.841: 95 %). step: a first guess of the half width.
- * A side that reaches its bound, or where chi2 does not grow so far, is open: +-INFINITY. */
-struct dea_lsq_interval {
-  double low, high;
-};
+/* Profile likelihood: the lower and the upper value of parameter j at which chi2, with all others
+ * fitted anew, has grown by `unit` (1: 68.3 %). step: a first guess of the half width. A side that
+ * reaches its bound, or where chi2 does not grow so far, is open: +-INFINITY. */
 dea_status dea_lsq_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
-                           const struct dea_lsq_fit *fit, size_t j, double rise, double variance,
-                           double step, struct dea_lsq_interval *out);
+                           const struct dea_lsq_fit *fit, size_t j, double unit, double step,
+                           double out[2]);

@@ -109,79 +109,88 @@ const struct dea_fit_form dea_life_form = {
 
 /* ---- a life ---- */
 
-/* Cycles in time, of all recordings of a specimen; NAN: not known. */
-struct rows {
+/* A cycle; NAN: not known. */
+struct cycle {
+  double clock[DEA_LIFE_CLOCKS]; // at its end
+  double asked_V, stroke, leakage_A;
+  double breakdown; // how many
+};
+
+/* Those of all recordings of a specimen, in time. */
+struct cycles {
   size_t count;
-  double *clock[DEA_LIFE_CLOCKS];                   // [count] at the end of each cycle
-  double *asked_V, *stroke, *leakage_A, *breakdown; // [count]; breakdown: how many
+  struct cycle *cycle; // [count]
 };
 
 static const double same_voltage = 0.99;
 
 /* Whether a cycle is one of the test itself, not of a look at the specimen at a lower voltage. */
-static bool is_judged(const struct rows *rows, size_t i, double largest_V)
+static bool is_judged(const struct cycle *cycle, double largest_V)
 {
-  return fabs(rows->asked_V[i]) >= same_voltage * largest_V;
+  return fabs(cycle->asked_V) >= same_voltage * largest_V;
 }
 
-static double largest_voltage(const struct rows *rows)
+static double largest_voltage(const struct cycles *c)
 {
   double largest_V = 0;
-  for (size_t i = 0; i < rows->count; i++) {
-    largest_V = fmax(largest_V, fabs(rows->asked_V[i])); // not NAN
+  for (size_t i = 0; i < c->count; i++) {
+    largest_V = fmax(largest_V, fabs(c->cycle[i].asked_V)); // not NAN
   }
   return largest_V;
 }
 
-/* Mean stroke of the first cycles, and the row behind them; NAN where there are not so many. */
-static double first_stroke(const struct rows *rows, double largest_V, size_t cycles, size_t *behind)
+/* Mean stroke of the first `count` cycles, and the row behind them; NAN where there are not so
+ * many. */
+static double first_stroke(const struct cycles *c, double largest_V, size_t count, size_t *behind)
 {
   double sum = 0;
   size_t n = 0;
-  for (*behind = 0; *behind < rows->count && n < cycles; ++*behind) {
-    if (is_judged(rows, *behind, largest_V) && !isnan(rows->stroke[*behind])) {
-      sum += fabs(rows->stroke[*behind]);
+  for (*behind = 0; *behind < c->count && n < count; ++*behind) {
+    const struct cycle *cycle = &c->cycle[*behind];
+    if (is_judged(cycle, largest_V) && !isnan(cycle->stroke)) {
+      sum += fabs(cycle->stroke);
       n++;
     }
   }
-  return n == cycles && n > 0 ? sum / (double)n : NAN;
+  return n == count && n > 0 ? sum / (double)n : NAN;
 }
 
-/* First of `lasting` judged cycles in a row whose value is beyond a limit: below it, or above;
- * those without a value neither count nor part the others. rows->count: there are none. */
-static size_t first_beyond(const struct rows *rows, const double *values, size_t from,
-                           double largest_V, double limit, bool below, size_t lasting)
+/* First of `lasting` judged cycles in a row whose stroke is below a limit, or whose leakage is
+ * above it; those without a value neither count nor part the others. c->count: there are none. */
+static size_t first_beyond(const struct cycles *c, bool stroke, size_t from, double largest_V,
+                           double limit, size_t lasting)
 {
-  size_t first = rows->count, n = 0;
-  for (size_t i = from; i < rows->count; i++) {
-    if (!is_judged(rows, i, largest_V) || isnan(values[i])) {
+  size_t first = c->count, n = 0;
+  for (size_t i = from; i < c->count; i++) {
+    const double value = stroke ? c->cycle[i].stroke : c->cycle[i].leakage_A;
+    if (!is_judged(&c->cycle[i], largest_V) || isnan(value)) {
       continue;
     }
-    bool beyond = below ? fabs(values[i]) < limit : fabs(values[i]) > limit;
+    bool beyond = stroke ? fabs(value) < limit : fabs(value) > limit;
     first = beyond && n == 0 ? i : first;
     n = beyond ? n + 1 : 0;
     if (n == lasting) {
       return first;
     }
   }
-  return rows->count;
+  return c->count;
 }
 
 /* Of the last judged cycle up to a row; NAN without. */
-static double last_stroke(const struct rows *rows, double largest_V, size_t row)
+static double last_stroke(const struct cycles *c, double largest_V, size_t row)
 {
   for (size_t i = row + 1; i > 0; i--) {
-    if (is_judged(rows, i - 1, largest_V) && !isnan(rows->stroke[i - 1])) {
-      return rows->stroke[i - 1];
+    if (is_judged(&c->cycle[i - 1], largest_V) && !isnan(c->cycle[i - 1].stroke)) {
+      return c->cycle[i - 1].stroke;
     }
   }
   return NAN;
 }
 
-static size_t first_breakdown(const struct rows *rows)
+static size_t first_breakdown(const struct cycles *c)
 {
   size_t i = 0;
-  while (i < rows->count && !(rows->breakdown[i] > 0)) {
+  while (i < c->count && !(c->cycle[i].breakdown > 0)) {
     i++;
   }
   return i;
@@ -190,32 +199,29 @@ static size_t first_breakdown(const struct rows *rows)
 /* When a specimen failed by the file's criterion, or that it survived. It is applied to what was
  * recorded, so that a recording goes on behind a failure and another criterion may be asked later
  * (docs/theory/reduction.md, "Lives"). Only cycles within 1 % of the largest voltage are judged by
- * stroke and leakage; a breakdown counts in any. rows->count > 0. */
-static void find_end(const struct rows *rows, const struct dea_life_file *criterion,
+ * stroke and leakage; a breakdown counts in any. c->count > 0. */
+static void find_end(const struct cycles *c, const struct dea_life_file *criterion,
                      struct dea_life *out)
 {
-  double largest_V = largest_voltage(rows);
+  double largest_V = largest_voltage(c);
   size_t behind, at[DEA_LIFE_ENDS];
-  double reference = first_stroke(rows, largest_V, (size_t)criterion->reference_cycles.si, &behind);
-  at[DEA_LIFE_SURVIVED] = at[DEA_LIFE_TOLD] = rows->count;
+  const size_t lasting = (size_t)criterion->lasting.si;
+  double reference = first_stroke(c, largest_V, (size_t)criterion->reference_cycles.si, &behind);
+  at[DEA_LIFE_SURVIVED] = at[DEA_LIFE_TOLD] = c->count;
   // comparisons with NAN are false: what is not known is not beyond
-  at[DEA_LIFE_STROKE] = first_beyond(rows, rows->stroke, behind, largest_V,
-                                     (1 - criterion->stroke_loss.si) * reference, true,
-                                     (size_t)criterion->lasting.si);
-  at[DEA_LIFE_LEAKAGE] = first_beyond(rows, rows->leakage_A, 0, largest_V, criterion->leakage_A.si,
-                                      false, (size_t)criterion->lasting.si);
-  at[DEA_LIFE_BREAKDOWN] = criterion->breakdown.value == 1 ? first_breakdown(rows) : rows->count;
-  *out = (struct dea_life){.row = rows->count - 1, .first_stroke = reference};
+  at[DEA_LIFE_STROKE] = first_beyond(c, true, behind, largest_V,
+                                     (1 - criterion->stroke_loss.si) * reference, lasting);
+  at[DEA_LIFE_LEAKAGE] = first_beyond(c, false, 0, largest_V, criterion->leakage_A.si, lasting);
+  at[DEA_LIFE_BREAKDOWN] = criterion->breakdown.value == 1 ? first_breakdown(c) : c->count;
+  *out = (struct dea_life){.row = c->count - 1, .first_stroke = reference};
   for (int end = DEA_LIFE_STROKE; end <= DEA_LIFE_BREAKDOWN; end++) {
-    if (at[end] < rows->count && (out->end == DEA_LIFE_SURVIVED || at[end] < out->row)) {
+    if (at[end] < c->count && (out->end == DEA_LIFE_SURVIVED || at[end] < out->row)) {
       out->end = (enum dea_life_end)end;
       out->row = at[end];
     }
   }
-  out->last_stroke = last_stroke(rows, largest_V, out->row);
-  for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
-    out->clock[k] = rows->clock[k][out->row];
-  }
+  out->last_stroke = last_stroke(c, largest_V, out->row);
+  memcpy(out->clock, c->cycle[out->row].clock, sizeof out->clock);
 }
 
 /* ---- the specimens ---- */
@@ -251,7 +257,7 @@ static const struct dea_csv_wanted wanted[COLUMNS] = {
 struct specimen {
   struct dea_csv_columns parts[DEA_LIFE_PARTS_MAX];
   size_t count; // of parts
-  struct rows rows;
+  struct cycles cycles;
 };
 
 static dea_status read_part(struct dea_context *ctx, const struct dea_life_file *file,
@@ -280,47 +286,34 @@ static enum column stroke_of(const struct specimen *s)
 }
 
 /* The cycles of all recordings one behind the other: clocks go on where the one before ended. */
-static void join_parts(struct specimen *s)
+static dea_status join_parts(struct dea_context *ctx, struct specimen *s)
 {
   static const enum column clocks[DEA_LIFE_CLOCKS] = {COLUMNS, END, UNDER_VOLTAGE, CHARGE};
   const enum column stroke = stroke_of(s);
   double so_far[DEA_LIFE_CLOCKS] = {0};
   size_t n = 0;
   for (size_t p = 0; p < s->count; p++) {
+    s->cycles.count += s->parts[p].rows;
+  }
+  s->cycles.cycle = dea_alloc(ctx, s->cycles.count + 1, sizeof *s->cycles.cycle);
+  DEA_TRY_MEMORY(s->cycles.cycle != NULL);
+  for (size_t p = 0; p < s->count; p++) {
     const struct dea_csv_columns *part = &s->parts[p];
     for (size_t i = 0; i < part->rows; i++, n++) {
-      s->rows.clock[DEA_LIFE_CYCLES][n] = (double)(n + 1);
+      struct cycle *cycle = &s->cycles.cycle[n];
+      *cycle = (struct cycle){.clock = {[DEA_LIFE_CYCLES] = (double)(n + 1)},
+                              .asked_V = at(part, ASKED, i),
+                              .stroke = at(part, stroke, i),
+                              .leakage_A = at(part, LEAKAGE, i),
+                              .breakdown = at(part, BREAKDOWNS, i)};
       for (int k = DEA_LIFE_TIME; k < DEA_LIFE_CLOCKS; k++) {
-        s->rows.clock[k][n] = so_far[k] + at(part, clocks[k], i);
+        cycle->clock[k] = so_far[k] + at(part, clocks[k], i);
       }
-      s->rows.asked_V[n] = at(part, ASKED, i);
-      s->rows.stroke[n] = at(part, stroke, i);
-      s->rows.leakage_A[n] = at(part, LEAKAGE, i);
-      s->rows.breakdown[n] = at(part, BREAKDOWNS, i);
     }
-    for (int k = DEA_LIFE_TIME; k < DEA_LIFE_CLOCKS && part->rows > 0; k++) {
-      so_far[k] = s->rows.clock[k][n - 1];
+    if (part->rows > 0) {
+      memcpy(so_far, s->cycles.cycle[n - 1].clock, sizeof so_far);
     }
   }
-  s->rows.count = n;
-}
-
-/* Memory for all rows in one piece, owned by the caller through clock[0]. */
-static dea_status build_rows(struct dea_context *ctx, struct specimen *s)
-{
-  size_t n = 0;
-  for (size_t p = 0; p < s->count; p++) {
-    n += s->parts[p].rows;
-  }
-  double *values = dea_alloc(ctx, n > 0 ? n : 1, (DEA_LIFE_CLOCKS + 4) * sizeof *values);
-  DEA_TRY_MEMORY(values != NULL);
-  for (size_t k = 0; k < DEA_LIFE_CLOCKS; k++) {
-    s->rows.clock[k] = values + k * n;
-  }
-  s->rows.asked_V = values + DEA_LIFE_CLOCKS * n;
-  s->rows.stroke = s->rows.asked_V + n;
-  s->rows.leakage_A = s->rows.stroke + n;
-  s->rows.breakdown = s->rows.leakage_A + n;
   return DEA_OK;
 }
 
@@ -350,9 +343,9 @@ static dea_status check_columns(struct dea_context *ctx, const struct dea_life_f
                                    own->reduced[p].text, lacks));
     }
   }
-  return s->rows.count > 0 ? DEA_OK
-                           : dea_finding_add(ctx, DEA_ERROR, own->name.location,
-                                             "'%.60s' has no completed cycle", own->name.text);
+  return s->cycles.count > 0 ? DEA_OK
+                             : dea_finding_add(ctx, DEA_ERROR, own->name.location,
+                                               "'%.60s' has no completed cycle", own->name.text);
 }
 
 static dea_status judge(struct dea_context *ctx, const struct dea_life_file *file,
@@ -360,7 +353,7 @@ static dea_status judge(struct dea_context *ctx, const struct dea_life_file *fil
                         struct dea_life *out)
 {
   const struct dea_csv_columns *last = &s->parts[s->count - 1];
-  find_end(&s->rows, file, out);
+  find_end(&s->cycles, file, out);
   if (file->stroke_loss.origin != DEA_ABSENT && isnan(out->first_stroke)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, own->name.location,
                                  "'%.60s' has fewer than %zu cycles with a stroke at its largest "
@@ -390,11 +383,8 @@ static dea_status read_specimen(struct dea_context *ctx, const struct dea_life_f
     s->count += status == DEA_OK ? 1 : 0;
   }
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  status = status == DEA_OK ? build_rows(ctx, s) : status;
-  if (status == DEA_OK) {
-    join_parts(s);
-    status = check_columns(ctx, file, own, s);
-  }
+  status = status == DEA_OK ? join_parts(ctx, s) : status;
+  status = status == DEA_OK ? check_columns(ctx, file, own, s) : status;
   if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) > errors) {
     status = dea_fail(ctx, DEA_E_IO, "specimen '%.60s' cannot be judged", own->name.text);
   }
@@ -402,7 +392,7 @@ static dea_status read_specimen(struct dea_context *ctx, const struct dea_life_f
   for (size_t p = 0; p < s->count; p++) {
     dea_csv_columns_free(ctx, &s->parts[p]);
   }
-  dea_free(ctx, s->rows.clock[0]);
+  dea_free(ctx, s->cycles.cycle);
   dea_free(ctx, s);
   return status;
 }
@@ -425,21 +415,10 @@ static struct dea_life given_life(const struct dea_life_file *file,
 
 static dea_status find_law(struct dea_context *ctx, struct dea_life_fit *fit)
 {
-  const size_t n = fit->rows;
-  double *ones = dea_arena_alloc(&fit->memory, n, sizeof *ones);
-  DEA_TRY(ctx, dea_arena_status(&fit->memory));
-  for (size_t i = 0; i < n; i++) {
-    ones[i] = 1;
-  }
   const struct dea_weibull_data data = {
-      .rows = n,
+      .rows = fit->rows,
       .field_V_per_m = fit->value,
-      .stretch = ones,
-      .thickness_m = ones,
-      .area_m2 = ones,
       .survived = fit->survived,
-      .thickness0_m = 1,
-      .area0_m2 = 1,
       .held = {[DEA_WEIBULL_STRETCH] = true, [DEA_WEIBULL_THICKNESS] = true},
   };
   fit->has_law = true;
@@ -457,11 +436,10 @@ static bool tells_law(const struct dea_life_fit *fit)
   return high > low;
 }
 
-static dea_status run(void *made, const void *data)
+dea_status dea_life_fit_run(struct dea_context *ctx, const struct dea_life_file *file,
+                            struct dea_life_fit *fit)
 {
-  struct dea_life_fit *fit = made;
-  struct dea_context *ctx = fit->memory.ctx;
-  const struct dea_life_file *file = fit->file = data;
+  *fit = (struct dea_life_fit){.file = file, .memory = {.ctx = ctx}};
   const size_t n = fit->rows = file->specimen_count;
   fit->lives = dea_arena_alloc(&fit->memory, n, sizeof *fit->lives);
   fit->value = dea_arena_alloc(&fit->memory, n, sizeof *fit->value);
@@ -485,7 +463,10 @@ static dea_status run(void *made, const void *data)
   return tells_law(fit) ? find_law(ctx, fit) : DEA_OK;
 }
 
-DEA_FIT_FRAME(life, run)
+void dea_life_fit_free(struct dea_life_fit *fit)
+{
+  dea_arena_free(&fit->memory);
+}
 
 double dea_life_fit_bound(const struct dea_life_fit *fit, double *life)
 {

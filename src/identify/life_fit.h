@@ -57,7 +57,7 @@ extern const double dea_life_clock_factors[]; // SI -> unit
 extern const struct dea_fit_form dea_life_form;
 
 struct dea_life_fit {
-  struct dea_arena memory;          // the first member
+  struct dea_arena memory;
   const struct dea_life_file *file; // lent
   size_t rows, failed;
   struct dea_life *lives; // [rows]; clocks that are not known are NAN
@@ -71,10 +71,10 @@ struct dea_life_fit {
 extern const char *const dea_life_end_names[];
 
 /* Reads the tables life.csv of the specimens' folders, judges and fits. What is wrong becomes
- * findings with file and line; DEA_E_IO then. out: owned by the caller, NULL on failure. */
+ * findings with file and line; DEA_E_IO then. fit: freed by the caller, also after a failure. */
 dea_status dea_life_fit_run(struct dea_context *ctx, const struct dea_life_file *file,
-                            struct dea_life_fit **out);
-void dea_life_fit_destroy(struct dea_context *ctx, struct dea_life_fit *fit);
+                            struct dea_life_fit *fit);
+void dea_life_fit_free(struct dea_life_fit *fit);
 
 /* Least share of specimens of which it is 95 % certain that fewer have failed by the shortest
  * survived life, where none has failed: 1 - 0.05^(1/n). */

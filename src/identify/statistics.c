@@ -135,12 +135,8 @@ static double find_lag(struct work *w, const struct dea_lsq_group *group, double
 static dea_status decompose(struct dea_context *ctx, struct work *w, double *singular)
 {
   const size_t m = w->rows, k = w->k;
-  struct dea_arena memory = {.ctx = ctx};
-  double *A = dea_arena_alloc(&memory, m * k, sizeof *A);
-  double *Vt = dea_arena_alloc(&memory, k * k, sizeof *Vt);
-  double *spare = dea_arena_alloc(&memory, k, sizeof *spare);
-  dea_status status = dea_arena_status(&memory);
-  for (size_t a = 0; a < k && status == DEA_OK; a++) {
+  double spare[DEA_LSQ_PARAMS_MAX], *A = w->W; // not filled yet
+  for (size_t a = 0; a < k; a++) {
     const double *column = w->fit->J + w->index[a] * m;
     double sum = 0;
     for (size_t i = 0; i < m; i++) {
@@ -151,20 +147,11 @@ static dea_status decompose(struct dea_context *ctx, struct work *w, double *sin
       A[a * m + i] = sum > 0 ? column[i] / w->length[a] : 0;
     }
   }
-  if (status == DEA_OK) {
-    lapack_int info =
-        LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'S', (lapack_int)m, (lapack_int)k, A, (lapack_int)m,
-                       singular, w->U, (lapack_int)m, Vt, (lapack_int)k, spare);
-    status =
-        info == 0 ? DEA_OK : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no singular values of the fit");
-  }
-  for (size_t a = 0; a < k && status == DEA_OK; a++) {
-    for (size_t b = 0; b < k; b++) {
-      w->V[a * k + b] = Vt[a * k + b]; // dgesvd gives V' by columns: [b + a k] of V'
-    }
-  }
-  dea_arena_free(&memory);
-  return status;
+  // V' by columns: [b + a k] of it is V[a k + b]
+  const lapack_int info =
+      LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'S', (lapack_int)m, (lapack_int)k, A, (lapack_int)m,
+                     singular, w->U, (lapack_int)m, w->V, (lapack_int)k, spare);
+  return info == 0 ? DEA_OK : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no singular values of the fit");
 }
 
 /* Change of p_a along singular vector b. */
@@ -331,34 +318,9 @@ dea_status dea_lsq_statistics_find(struct dea_context *ctx, const struct dea_lsq
     }
   }
   out->active = w.k;
-  out->group_count = group_count;
   dea_status status = find(ctx, &w, scale_known, out);
-  if (status != DEA_OK) {
-    dea_lsq_statistics_free(out);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_lsq_statistics_free(out));
   return DEA_OK;
-}
-
-dea_status dea_lsq_weigh(bool sought, double *scatter,
-                         dea_status (*solve)(void *user, const struct dea_lsq_statistics **found),
-                         void *user)
-{
-  enum { ROUNDS_MAX = 20 };
-  static const double first = 0.01, same = 1e-3;
-  *scatter *= sought ? first : 1;
-  for (int round = 1;; round++) {
-    const struct dea_lsq_statistics *found = NULL;
-    dea_status status = solve(user, &found);
-    if (status != DEA_OK || !sought || round == ROUNDS_MAX) {
-      return status;
-    }
-    double factor = sqrt(found->variance);
-    if (!(factor > 0) || !isfinite(factor) || fabs(factor - 1) <= same) {
-      return DEA_OK;
-    }
-    *scatter *= factor;
-  }
 }
 
 double dea_lsq_std_of(const struct dea_lsq_statistics *statistics, const double *slope)

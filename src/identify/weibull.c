@@ -25,9 +25,7 @@ struct work {
 struct point {
   double c[N];
   double log_likelihood;
-  double gradient[N], information[N * N]; // of the free ones, in order
-  size_t free;
-  size_t of[N]; // which
+  double gradient[N], information[N * N]; // rows of what is held are those of the unit matrix
 };
 
 /* z of a row is offset + sum of c_k x_k. */
@@ -38,9 +36,12 @@ static void row_of(const struct work *w, const struct kept *kept, size_t i, doub
   double *of_shape = &x[DEA_WEIBULL_SHAPE];
   *of_shape = log(d->field_V_per_m[i]) - w->mean;
   x[DEA_WEIBULL_FIELD] = -1;
-  x[DEA_WEIBULL_STRETCH] = -log(d->stretch[i]);
-  x[DEA_WEIBULL_THICKNESS] = -log(d->thickness_m[i] / d->thickness0_m);
-  *offset = log(d->area_m2[i] / d->area0_m2);
+  x[DEA_WEIBULL_STRETCH] = x[DEA_WEIBULL_THICKNESS] = *offset = 0;
+  if (d->stretch != NULL) {
+    x[DEA_WEIBULL_STRETCH] = -log(d->stretch[i]);
+    x[DEA_WEIBULL_THICKNESS] = -log(d->thickness_m[i] / d->thickness0_m);
+    *offset = log(d->area_m2[i] / d->area0_m2);
+  }
   for (int k = 0; k < N; k++) {
     if (k != DEA_WEIBULL_SHAPE && kept->held[k]) {
       *of_shape += kept->value[k] * x[k];
@@ -61,59 +62,51 @@ static double shape_at(const struct kept *kept, const double c[N])
 /* Likelihood with its derivatives at p->c. */
 static void evaluate(const struct work *w, const struct kept *kept, struct point *p)
 {
-  const double b = shape_at(kept, p->c);
-  p->free = 0;
-  for (size_t k = 0; k < N; k++) {
-    if (!kept->held[k]) {
-      p->of[p->free++] = k;
-    }
-  }
+  const double b = shape_at(kept, p->c), broken = (double)w->broken;
   memset(p->gradient, 0, sizeof p->gradient);
   memset(p->information, 0, sizeof p->information);
-  p->log_likelihood = (double)w->broken * log(b);
+  p->log_likelihood = broken * log(b);
   for (size_t i = 0; i < w->data->rows; i++) {
-    double x[N], z;
+    double x[N], z; // 0 of what is held
     row_of(w, kept, i, x, &z);
     for (size_t k = 0; k < N; k++) {
-      z += kept->held[k] ? 0 : p->c[k] * x[k];
+      z += p->c[k] * x[k];
     }
     const double hazard = exp(z), left = (w->data->survived[i] ? 0 : 1) - hazard;
     p->log_likelihood += (w->data->survived[i] ? 0 : z) - hazard;
-    for (size_t a = 0; a < p->free; a++) {
-      p->gradient[a] += left * x[p->of[a]];
-      for (size_t k = 0; k < p->free; k++) {
-        p->information[a * p->free + k] += hazard * x[p->of[a]] * x[p->of[k]];
+    for (size_t a = 0; a < N; a++) {
+      p->gradient[a] += left * x[a];
+      for (size_t k = 0; k < N; k++) {
+        p->information[a * N + k] += hazard * x[a] * x[k];
       }
     }
   }
-  for (size_t a = 0; a < p->free; a++) {
-    if (p->of[a] == DEA_WEIBULL_SHAPE) {
-      p->gradient[a] += (double)w->broken / b;
-      p->information[a * p->free + a] += (double)w->broken / (b * b);
-    }
+  for (size_t k = 0; k < N; k++) {
+    const bool shape = k == DEA_WEIBULL_SHAPE && !kept->held[k];
+    p->gradient[k] += shape ? broken / b : 0;
+    p->information[k * N + k] += kept->held[k] ? 1 : shape ? broken / (b * b) : 0;
   }
 }
 
-/* Step of Newton's method; false where the information is singular. */
+/* Step of Newton's method, 0 of what is held; false where the information is singular. */
 static bool newton_step(const struct point *p, double step[N])
 {
   double A[N * N], scale[N];
-  const lapack_int n = (lapack_int)p->free;
-  for (size_t a = 0; a < p->free; a++) {
-    scale[a] = 1 / sqrt(p->information[a * p->free + a]);
+  for (size_t a = 0; a < N; a++) {
+    scale[a] = 1 / sqrt(p->information[a * N + a]);
   }
-  for (size_t a = 0; a < p->free; a++) {
+  for (size_t a = 0; a < N; a++) {
     step[a] = p->gradient[a] * scale[a];
-    for (size_t k = 0; k < p->free; k++) {
-      A[a * p->free + k] = p->information[a * p->free + k] * scale[a] * scale[k];
+    for (size_t k = 0; k < N; k++) {
+      A[a * N + k] = p->information[a * N + k] * scale[a] * scale[k];
     }
   }
-  if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', n, 1, A, n, step, n) != 0) {
+  if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', N, 1, A, N, step, N) != 0) {
     return false;
   }
-  for (size_t a = 0; a < p->free; a++) {
+  for (size_t a = 0; a < N; a++) {
     step[a] *= scale[a];
-    if (A[a * p->free + a] * A[a * p->free + a] < same || !isfinite(step[a])) {
+    if (A[a * N + a] * A[a * N + a] < same || !isfinite(step[a])) {
       return false;
     }
   }
@@ -126,9 +119,6 @@ static bool maximise(const struct work *w, const struct kept *kept, struct point
   evaluate(w, kept, p);
   for (int round = 0; round < STEPS_MAX; round++) {
     double step[N], growth = 0;
-    if (p->free == 0) {
-      return true;
-    }
     if (!newton_step(p, step)) {
       return false;
     }
@@ -136,8 +126,8 @@ static bool maximise(const struct work *w, const struct kept *kept, struct point
     double share = 1;
     for (int k = 0; k < HALVINGS_MAX; k++, share *= 0.5) {
       next = *p;
-      for (size_t a = 0; a < p->free; a++) {
-        next.c[p->of[a]] += share * step[a];
+      for (size_t a = 0; a < N; a++) {
+        next.c[a] += share * step[a];
       }
       if (shape_at(kept, next.c) > 0) {
         evaluate(w, kept, &next);
@@ -170,33 +160,31 @@ static void values_of(const struct kept *kept, const double c[N], double out[N])
   }
 }
 
-/* Covariance of ln E_0, b, n, p from the inverse of the information by the chain rule. */
+/* Covariance of ln E_0, b, n, p from the inverse of the information by the chain rule; the shape is
+ * free. */
 static bool find_covariance(const struct kept *kept, const struct point *p,
                             struct dea_weibull_fit *out)
 {
   double A[N * N], T[N][N] = {{0}}; // T[k][a]: dvalue_k/dc_a
-  const size_t n = p->free;
   const double b = shape_at(kept, p->c);
-  memcpy(A, p->information, n * n * sizeof *A);
-  if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', (lapack_int)n, A, (lapack_int)n) != 0 ||
-      LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', (lapack_int)n, A, (lapack_int)n) != 0) {
+  memcpy(A, p->information, sizeof A);
+  if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', N, A, N) != 0 ||
+      LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', N, A, N) != 0) {
     return false;
   }
-  for (size_t a = 0; a < n; a++) {
-    const size_t k = p->of[a];
-    T[k][a] = k == DEA_WEIBULL_SHAPE ? 1 : 1 / b;
-    for (size_t j = 0; j < N && k == DEA_WEIBULL_SHAPE; j++) {
-      if (j != k && !kept->held[j]) {
-        T[j][a] = -p->c[j] / (b * b);
-      }
+  for (size_t k = 0; k < N; k++) {
+    if (!kept->held[k] && k != DEA_WEIBULL_SHAPE) {
+      T[k][k] = 1 / b;
+      T[k][DEA_WEIBULL_SHAPE] = -p->c[k] / (b * b);
     }
   }
+  T[DEA_WEIBULL_SHAPE][DEA_WEIBULL_SHAPE] = 1;
   for (size_t j = 0; j < N; j++) {
     for (size_t k = 0; k < N; k++) {
       double sum = 0;
-      for (size_t a = 0; a < n; a++) {
-        for (size_t e = 0; e < n; e++) {
-          sum += T[j][a] * (a >= e ? A[e * n + a] : A[a * n + e]) * T[k][e];
+      for (size_t a = 0; a < N; a++) {
+        for (size_t e = 0; e < N; e++) {
+          sum += T[j][a] * (a >= e ? A[e * N + a] : A[a * N + e]) * T[k][e];
         }
       }
       out->covariance[j][k] = sum;

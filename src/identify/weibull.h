@@ -13,8 +13,8 @@
  * With z = b ln E - b ln E_0 - b n ln s - b p ln(h/h_0) + ln(A/A_0) the logarithm of the
  * likelihood, sum over those that broke of (ln b + z) minus sum over all of exp z, is concave in b,
  * b ln E_0, b n, b p: Newton's method with shorter steps finds its one maximum. Derivation:
- * docs/theory/fit.md. A life takes the place of the field where specimens are cycled (life.h):
- * then s, h and A are the same of all and n, p held at 0.
+ * docs/theory/fit.md. A life takes the place of the field where specimens are cycled
+ * (life_fit.h), all alike: n, p held at 0.
  */
 #pragma once
 
@@ -30,9 +30,10 @@ enum dea_weibull_param {
 
 struct dea_weibull_data {
   size_t rows;
-  const double *field_V_per_m, *stretch, *thickness_m, *area_m2; // [rows] > 0
-  const bool *survived;                                          // [rows]
-  double thickness0_m, area0_m2;                                 // h_0, A_0
+  const double *field_V_per_m;                   // [rows] > 0
+  const double *stretch, *thickness_m, *area_m2; // the same; NULL: all alike
+  const bool *survived;                          // [rows]
+  double thickness0_m, area0_m2;                 // h_0, A_0
   bool held[DEA_WEIBULL_PARAMS]; // kept at `given`: neither E_0 nor the shape can be
   double given[DEA_WEIBULL_PARAMS];
 };

@@ -3,6 +3,7 @@
 
 #include "base/csv_line.h"
 #include "base/file.h"
+#include "base/units.h"
 #include "base/version.h"
 #include "base/write_file.h"
 #include "base/yaml_write.h"
@@ -58,11 +59,12 @@ static json_t *weibull_json(const struct dea_weibull_fit *fit, size_t param, con
 }
 
 /* Adds "correlations", chi-square, rows, condition. scatter_key: of the scatter, where no
- * uncertainty was given (known). */
-static void add_statistics_json(json_t *root, bool known, const char *scatter_key, double scatter,
-                                const struct dea_lsq_fit *least_squares,
-                                const struct dea_lsq_statistics *statistics)
+ * uncertainty was given. */
+static void add_statistics_json(json_t *root, const struct dea_fit_core *core,
+                                const char *scatter_key)
 {
+  const struct dea_lsq_statistics *statistics = &core->statistics;
+  const bool known = core->scale_known;
   const size_t n = statistics->params;
   json_t *rows = json_array();
   for (size_t j = 0; j < n; j++) {
@@ -74,11 +76,11 @@ static void add_statistics_json(json_t *root, bool known, const char *scatter_ke
   }
   json_object_set_new(root, "correlations", rows);
   json_object_set_new(root, "uncertainty_given", json_boolean(known));
-  dea_json_add(root, scatter_key, known ? NAN : scatter);
-  dea_json_add(root, "chi_square", known ? least_squares->chi2 : NAN);
+  dea_json_add(root, scatter_key, known ? NAN : core->scatter);
+  dea_json_add(root, "chi_square", known ? core->least_squares.chi2 : NAN);
   dea_json_add(root, "reduced_chi_square", known ? statistics->reduced_chi2 : NAN);
   json_object_set_new(root, "widened", json_boolean(statistics->widened));
-  dea_json_add_count(root, "rows", least_squares->rows);
+  dea_json_add_count(root, "rows", core->least_squares.rows);
   dea_json_add(root, "effective_rows", statistics->effective_rows);
   dea_json_add(root, "condition", statistics->condition);
 }
@@ -96,18 +98,17 @@ static void add_rows_json(json_t *object, const char *file, const char *sha256, 
 }
 
 /* Adds "weak", and the next measurements as `next_key`, each called `word`. */
-static void add_advice_json(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], size_t weak_count,
-                            const char *next_key, const char *word, const struct dea_fit_next *next,
-                            size_t next_count)
+static void add_advice_json(json_t *object, const struct dea_fit_core *core, const char *next_key,
+                            const char *word)
 {
   json_t *combinations = json_array(), *measurements = json_array();
-  for (size_t k = 0; k < weak_count; k++) {
-    json_array_append_new(combinations, json_string(weak[k]));
+  for (size_t k = 0; k < core->weak_count; k++) {
+    json_array_append_new(combinations, json_string(core->weak[k]));
   }
-  for (size_t k = 0; k < next_count; k++) {
+  for (size_t k = 0; k < core->next_count; k++) {
     json_t *row = json_object();
-    dea_json_add_text(row, word, next[k].what);
-    dea_json_add(row, "error_bars_times", next[k].shrink);
+    dea_json_add_text(row, word, core->next[k].what);
+    dea_json_add(row, "error_bars_times", core->next[k].shrink);
     json_array_append_new(measurements, row);
   }
   json_object_set_new(object, "weak", combinations);
@@ -126,19 +127,30 @@ static dea_status create(struct dea_context *ctx, const struct dea_fit_folder *t
   return dea_folder_create(ctx, to->path);
 }
 
-/* The folder with NAME.yaml (yaml NULL: none), fit.csv and fit.json; root: taken. */
+/* Adds the rows of fit.csv, and NAME.yaml where a kind has one. */
+typedef dea_status fill_texts(struct dea_context *ctx, const void *fit, struct dea_text *csv,
+                              struct dea_text *yaml);
+
+/* The folder with NAME.yaml, fit.csv and fit.json; root: taken. */
 static dea_status write_folder(struct dea_context *ctx, const struct dea_fit_folder *to,
-                               const char *name, const char *const figures[], size_t figure_count,
-                               const struct dea_text *yaml, const struct dea_text *csv,
-                               json_t *root)
+                               const struct dea_fit_head *head, const char *const figures[],
+                               size_t figure_count, fill_texts *fill, const void *fit, json_t *root)
 {
   char file[DEA_NAME_SIZE + 8], *json = NULL;
-  snprintf(file, sizeof file, "%.63s.yaml", name);
+  struct dea_text csv = {.ctx = ctx}, yaml = {.ctx = ctx};
+  snprintf(file, sizeof file, "%.63s.yaml", head->name.text);
   dea_status status = dea_json_text(ctx, root, &json);
+  void *before = dea_c_locale_enter();
+  status = status == DEA_OK ? fill(ctx, fit, &csv, &yaml) : status;
+  dea_c_locale_leave(before);
   status = status == DEA_OK ? create(ctx, to, file, figures, figure_count) : status;
-  status = status == DEA_OK && yaml != NULL ? dea_text_write(ctx, yaml, to->path, file) : status;
-  status = status == DEA_OK ? dea_text_write(ctx, csv, to->path, "fit.csv") : status;
+  if (status == DEA_OK && (yaml.length > 0 || yaml.failed)) {
+    status = dea_text_write(ctx, &yaml, to->path, file);
+  }
+  status = status == DEA_OK ? dea_text_write(ctx, &csv, to->path, "fit.csv") : status;
   status = status == DEA_OK ? dea_text_file_write(ctx, to->path, "fit.json", json) : status;
+  dea_text_free(&yaml);
+  dea_text_free(&csv);
   dea_free(ctx, json);
   return status;
 }
@@ -206,21 +218,15 @@ static void add_source(struct dea_text *out, const char *indent, const struct de
   dea_text_free(&source);
 }
 
-static const char *unit_text(const char *unit)
-{
-  return strcmp(unit, "1") == 0 ? "" : unit;
-}
-
 static void add_value(struct dea_text *out, const char *separator, const char *key, double value,
                       const char *unit)
 {
-  dea_text_add(out, "%s%s: %.10g%s%s", separator, key, value, unit_text(unit)[0] != '\0' ? " " : "",
-               unit_text(unit));
+  dea_text_add(out, "%s%s: %.10g%s%s", separator, key, value, DEA_UNIT_BEHIND(unit));
 }
 
 static bool has_std(const struct dea_fit *fit, size_t j)
 {
-  return isfinite(fit->values[j].std) && fit->values[j].std > 0;
+  return isfinite(fit->core.values[j].std) && fit->core.values[j].std > 0;
 }
 
 static void add_law(struct dea_text *out, const struct dea_fit *fit)
@@ -229,7 +235,7 @@ static void add_law(struct dea_text *out, const struct dea_fit *fit)
   const size_t n = model->count;
   dea_text_add(out, "laws:\n  - id: fit\n    law: %s\n    parameters: {", model->law->name);
   for (size_t j = 0; j < model->law_count; j++) {
-    add_value(out, j > 0 ? ", " : "", model->params[j].name, fit->values[j].value,
+    add_value(out, j > 0 ? ", " : "", model->params[j].name, fit->core.values[j].value,
               model->params[j].unit);
   }
   dea_text_add(out, "}\n");
@@ -237,7 +243,7 @@ static void add_law(struct dea_text *out, const struct dea_fit *fit)
   for (size_t j = 0; j < model->law_count; j++) {
     if (has_std(fit, j)) {
       add_value(out, known++ > 0 ? ", " : "    standard_uncertainties: {", model->params[j].name,
-                fit->values[j].std, model->params[j].unit);
+                fit->core.values[j].std, model->params[j].unit);
     }
   }
   dea_text_add(out, known > 0 ? "}\n" : "");
@@ -245,7 +251,7 @@ static void add_law(struct dea_text *out, const struct dea_fit *fit)
   for (size_t j = 0; j < model->law_count; j++) {
     for (size_t l = 0; l < j; l++) {
       if (has_std(fit, j) && has_std(fit, l)) {
-        dea_text_add(out, "%s%.6f", separator, fit->statistics.correlation[j * n + l]);
+        dea_text_add(out, "%s%.6f", separator, fit->core.statistics.correlation[j * n + l]);
         separator = ", ";
       }
     }
@@ -254,8 +260,8 @@ static void add_law(struct dea_text *out, const struct dea_fit *fit)
   dea_text_add(out, "    stretch_range: [%.6g, %.6g]\n", fit->stretch_min, fit->stretch_max);
   add_source(out, "    ", fit);
   struct dea_text note = {.ctx = out->ctx};
-  for (size_t k = 0; k < fit->weak_count; k++) {
-    dea_text_add(&note, "%s%s", k > 0 ? "; " : "", fit->weak[k]);
+  for (size_t k = 0; k < fit->core.weak_count; k++) {
+    dea_text_add(&note, "%s%s", k > 0 ? "; " : "", fit->core.weak[k]);
   }
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     if (!isnan(fit->stability[mode].unstable_from)) {
@@ -273,11 +279,11 @@ static void add_law(struct dea_text *out, const struct dea_fit *fit)
 static void add_shift(struct dea_text *out, const struct dea_fit *fit)
 {
   const size_t j = fit->model.count - 2;
-  add_value(out, "    wlf: {", "c1", fit->values[j].value, "1");
-  add_value(out, ", ", "c2", fit->values[j + 1].value, "K");
+  add_value(out, "    wlf: {", "c1", fit->core.values[j].value, "1");
+  add_value(out, ", ", "c2", fit->core.values[j + 1].value, "K");
   if (has_std(fit, j) && has_std(fit, j + 1)) {
-    add_value(out, ", ", "c1_uncertainty", fit->values[j].std, "1");
-    add_value(out, ", ", "c2_uncertainty", fit->values[j + 1].std, "K");
+    add_value(out, ", ", "c1_uncertainty", fit->core.values[j].std, "1");
+    add_value(out, ", ", "c2_uncertainty", fit->core.values[j + 1].std, "K");
   }
   dea_text_add(out, "}\n");
 }
@@ -287,18 +293,18 @@ static void add_viscosity(struct dea_text *out, const struct dea_fit *fit)
   bool any = false;
   for (size_t b = 0; b < fit->model.branch_count; b++) {
     const size_t j = fit->model.law_count + 2 * b;
-    if (fit->values[j].value <= 0) { // a branch that the data do not want
+    if (fit->core.values[j].value <= 0) { // a branch that the data do not want
       continue;
     }
     dea_text_add(out, any ? "" : "viscosity:\n  - id: fit\n    branches:\n");
     any = true;
-    add_value(out, "      - {", "modulus", fit->values[j].value, "Pa");
-    add_value(out, ", ", "time", fit->values[j + 1].value, "s");
+    add_value(out, "      - {", "modulus", fit->core.values[j].value, "Pa");
+    add_value(out, ", ", "time", fit->core.values[j + 1].value, "s");
     if (has_std(fit, j)) {
-      add_value(out, ", ", "modulus_uncertainty", fit->values[j].std, "Pa");
+      add_value(out, ", ", "modulus_uncertainty", fit->core.values[j].std, "Pa");
     }
     if (has_std(fit, j + 1)) {
-      add_value(out, ", ", "time_uncertainty", fit->values[j + 1].std, "s");
+      add_value(out, ", ", "time_uncertainty", fit->core.values[j + 1].std, "s");
     }
     dea_text_add(out, "}\n");
   }
@@ -362,7 +368,7 @@ static json_t *values_json(const struct dea_fit *fit)
     json_t *object = json_object();
     dea_json_add_text(object, "name", fit->model.params[j].name);
     dea_json_add_text(object, "unit", fit->model.params[j].unit);
-    add_value_json(object, &fit->values[j]);
+    add_value_json(object, &fit->core.values[j]);
     json_array_append_new(array, object);
   }
   return array;
@@ -414,8 +420,7 @@ static json_t *tests_json(const struct dea_fit *fit)
 static json_t *advice_json(const struct dea_fit *fit)
 {
   json_t *object = json_object(), *stability = json_array(), *spreads = json_array();
-  add_advice_json(object, fit->weak, fit->weak_count, "next_tests", "test", fit->next,
-                  fit->next_count);
+  add_advice_json(object, &fit->core, "next_tests", "test");
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     json_t *row = json_object();
     dea_json_add_text(row, "mode", dea_coupon_mode_names[mode]);
@@ -444,32 +449,30 @@ json_t *dea_fit_json(const struct dea_fit *fit, const char *command)
   dea_json_add_text(root, "law", fit->model.law->name);
   json_object_set_new(root, "laws", laws_json(fit));
   json_object_set_new(root, "parameters", values_json(fit));
-  add_statistics_json(root, fit->scale_known, "scatter_Pa", fit->scatter_Pa, &fit->least_squares,
-                      &fit->statistics);
+  add_statistics_json(root, &fit->core, "scatter_Pa");
   json_object_set_new(root, "tests", tests_json(fit));
   json_object_set_new(root, "advice", advice_json(fit));
   return root;
+}
+
+static dea_status fill_fit(struct dea_context *ctx, const void *of, struct dea_text *csv,
+                           struct dea_text *yaml)
+{
+  const struct dea_fit *fit = of;
+  dea_text_add(csv, "test,use,line,time (s),stretch,stress (kPa),stress std (kPa),fit (kPa),"
+                    "fit std (kPa),residual (kPa)\n");
+  for (size_t s = 0; s < fit->series_count; s++) {
+    add_rows(csv, &fit->curves[s]);
+  }
+  return add_material(ctx, fit, yaml);
 }
 
 dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit,
                          const struct dea_fit_folder *to)
 {
   static const char *const figures[] = {"fit", "fit_time"};
-  struct dea_text csv = {.ctx = ctx}, material = {.ctx = ctx};
-  void *before = dea_c_locale_enter();
-  dea_text_add(&csv, "test,use,line,time (s),stretch,stress (kPa),stress std (kPa),fit (kPa),"
-                     "fit std (kPa),residual (kPa)\n");
-  for (size_t s = 0; s < fit->series_count; s++) {
-    add_rows(&csv, &fit->curves[s]);
-  }
-  dea_status status = add_material(ctx, fit, &material);
-  status = status == DEA_OK ? write_folder(ctx, to, fit->file->head.name.text, figures, 2,
-                                           &material, &csv, dea_fit_json(fit, to->command))
-                            : status;
-  dea_text_free(&material);
-  dea_text_free(&csv);
-  dea_c_locale_leave(before);
-  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, write_folder(ctx, to, &fit->file->head, figures, 2, fill_fit, fit,
+                            dea_fit_json(fit, to->command)));
   return dea_fit_draw(ctx, fit, to->format, to->path);
 }
 
@@ -502,7 +505,7 @@ static json_t *device_values_json(const struct dea_device_fit *fit)
     dea_json_add_text(object, "unit", param->param.unit);
     dea_json_add_text(object, "film", param->state[0] != '\0' ? param->state + 1 : "");
     dea_json_add(object, "designed", param->designed);
-    add_value_json(object, &fit->values[j]);
+    add_value_json(object, &fit->core.values[j]);
     dea_json_add(object, "prior", param->param.prior);
     dea_json_add(object, "prior_std", param->param.prior_std);
     dea_json_add_text(object, "prior_of", param->prior_of);
@@ -534,8 +537,7 @@ static json_t *curves_json(const struct dea_device_fit *fit)
 static json_t *device_advice_json(const struct dea_device_fit *fit)
 {
   json_t *object = json_object(), *pairs = json_array();
-  add_advice_json(object, fit->weak, fit->weak_count, "next_measurements", "measurement", fit->next,
-                  fit->next_count);
+  add_advice_json(object, &fit->core, "next_measurements", "measurement");
   for (size_t k = 0; k < fit->pair_count; k++) {
     const struct dea_device_pair *pair = &fit->pairs[k];
     json_t *row = json_object();
@@ -557,8 +559,7 @@ json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *comman
   dea_json_add_text(root, "design_sha256", fit->design_sha256);
   dea_json_add_text(root, "model", fit->model);
   json_object_set_new(root, "parameters", device_values_json(fit));
-  add_statistics_json(root, fit->scale_known, "scatter", fit->scatter, &fit->least_squares,
-                      &fit->statistics);
+  add_statistics_json(root, &fit->core, "scatter");
   dea_json_add_count(root, "evaluations", fit->evaluations);
   json_object_set_new(root, "curves", curves_json(fit));
   json_object_set_new(root, "slack_settled", json_boolean(fit->settled));
@@ -566,13 +567,25 @@ json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *comman
   return root;
 }
 
-/* NAME.yaml, fit.csv and fit.json. */
-static dea_status write_texts(struct dea_context *ctx, const struct dea_device_fit *fit,
-                              const struct dea_fit_folder *to)
+static dea_status fill_device(struct dea_context *ctx, const void *of, struct dea_text *csv,
+                              struct dea_text *yaml)
+{
+  const struct dea_device_fit *fit = of;
+  (void)ctx;
+  dea_text_add(csv, "curve,quantity,use,line,fitted,V (kV),tip depth (mm),measured,measured std,"
+                    "model,model std,as designed,unit,time (s)\n");
+  for (size_t c = 0; c < fit->curve_count; c++) {
+    add_device_rows(csv, &fit->curves[c]);
+  }
+  dea_text_add(yaml, "%s", dea_text_get(&fit->design));
+  return DEA_OK;
+}
+
+dea_status dea_device_fit_write(struct dea_context *ctx, const struct dea_device_fit *fit,
+                                const struct dea_fit_folder *to)
 {
   const size_t count = 2 * (size_t)dea_column_count(ctx);
   struct dea_arena memory = {.ctx = ctx};
-  struct dea_text csv = {.ctx = ctx};
   char(*names)[64] = dea_arena_alloc(&memory, count, sizeof *names);
   const char **figures = dea_arena_alloc(&memory, count, sizeof *figures);
   for (size_t c = 0; figures != NULL && c < count; c++) {
@@ -580,27 +593,11 @@ static dea_status write_texts(struct dea_context *ctx, const struct dea_device_f
              dea_column_at(ctx, (int)(c / 2))->key);
     figures[c] = names[c];
   }
-  dea_text_add(&csv, "curve,quantity,use,line,fitted,V (kV),tip depth (mm),measured,measured std,"
-                     "model,model std,as designed,unit,time (s)\n");
-  for (size_t c = 0; c < fit->curve_count; c++) {
-    add_device_rows(&csv, &fit->curves[c]);
-  }
   dea_status status = dea_arena_status(&memory);
-  status = status == DEA_OK
-               ? write_folder(ctx, to, fit->file->head.name.text, figures, count, &fit->design,
-                              &csv, dea_device_fit_json(fit, to->command))
-               : status;
-  dea_text_free(&csv);
+  status = status == DEA_OK ? write_folder(ctx, to, &fit->file->head, figures, count, fill_device,
+                                           fit, dea_device_fit_json(fit, to->command))
+                            : status;
   dea_arena_free(&memory);
-  return status;
-}
-
-dea_status dea_device_fit_write(struct dea_context *ctx, const struct dea_device_fit *fit,
-                                const struct dea_fit_folder *to)
-{
-  void *before = dea_c_locale_enter();
-  dea_status status = write_texts(ctx, fit, to);
-  dea_c_locale_leave(before);
   DEA_TRY(ctx, status);
   return dea_device_fit_draw(ctx, fit, to->format, to->path);
 }
@@ -745,29 +742,29 @@ static dea_status draw_breakdown(struct dea_context *ctx, const struct dea_break
   return status;
 }
 
+static dea_status fill_breakdown(struct dea_context *ctx, const void *fit, struct dea_text *csv,
+                                 struct dea_text *yaml)
+{
+  add_film_rows(csv, fit);
+  return add_breakdown_material(ctx, fit, yaml);
+}
+
 dea_status dea_breakdown_fit_write(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
                                    const struct dea_fit_folder *to)
 {
   static const char *const figures[] = {"fit"};
-  struct dea_text csv = {.ctx = ctx}, material = {.ctx = ctx};
-  void *before = dea_c_locale_enter();
-  add_film_rows(&csv, fit);
-  dea_status status = add_breakdown_material(ctx, fit, &material);
-  dea_c_locale_leave(before);
-  status = status == DEA_OK
-               ? write_folder(ctx, to, fit->file->head.name.text, figures, 1, &material, &csv,
-                              dea_breakdown_fit_json(fit, to->command))
-               : status;
-  dea_text_free(&csv);
-  dea_text_free(&material);
-  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, write_folder(ctx, to, &fit->file->head, figures, 1, fill_breakdown, fit,
+                            dea_breakdown_fit_json(fit, to->command)));
   return draw_breakdown(ctx, fit, to->format, to->path);
 }
 
 // Lives -------------------------------------------------------------------------------------------
 
-static void add_life_rows(struct dea_text *csv, const struct dea_life_fit *fit)
+static dea_status fill_life(struct dea_context *ctx, const void *of, struct dea_text *csv,
+                            struct dea_text *yaml)
 {
+  const struct dea_life_fit *fit = of;
+  (void)ctx, (void)yaml; // there is none
   dea_text_add(csv, "specimen,failed,why,cycles,time (h),under voltage (h),charge (mC),"
                     "last over first stroke,chance of a shorter life by the law\n");
   for (size_t i = 0; i < fit->rows; i++) {
@@ -783,6 +780,7 @@ static void add_life_rows(struct dea_text *csv, const struct dea_life_fit *fit)
                              : (double)NAN);
     dea_text_add(csv, "\n");
   }
+  return DEA_OK;
 }
 
 static json_t *specimens_json(const struct dea_life_fit *fit)
@@ -851,13 +849,7 @@ dea_status dea_life_fit_write(struct dea_context *ctx, const struct dea_life_fit
                               const struct dea_fit_folder *to)
 {
   static const char *const figures[] = {"fit"};
-  struct dea_text csv = {.ctx = ctx};
-  void *before = dea_c_locale_enter();
-  add_life_rows(&csv, fit);
-  dea_c_locale_leave(before);
-  dea_status status = write_folder(ctx, to, fit->file->head.name.text, figures, 1, NULL, &csv,
-                                   dea_life_fit_json(fit, to->command));
-  dea_text_free(&csv);
-  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, write_folder(ctx, to, &fit->file->head, figures, 1, fill_life, fit,
+                            dea_life_fit_json(fit, to->command)));
   return fit->has_law ? draw_life(ctx, fit, to->format, to->path) : DEA_OK;
 }

@@ -17,6 +17,17 @@ static bool is_fatal(dea_status status)
          status == DEA_E_UNSUPPORTED;
 }
 
+/* A failure that is none of these is but kept in words. */
+static dea_status keep_why(struct dea_device_model *model, dea_status status)
+{
+  if (status == DEA_OK || is_fatal(status)) {
+    return status;
+  }
+  snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(model->ctx));
+  dea_context_clear(model->ctx);
+  return DEA_OK;
+}
+
 /* More area than this, or less than its inverse, beside a design nearby: another branch, as beyond
  * pull-in. */
 static const double branch_jump = 1.5;
@@ -132,13 +143,7 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
   }
   model->type->destroy(ctx, m);
   dea_monitor_set_free(&set);
-  status = status == DEA_OK ? dea_arena_status(&model->monitors) : status;
-  if (status != DEA_OK && !is_fatal(status)) {
-    snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
+  return keep_why(model, status == DEA_OK ? dea_arena_status(&model->monitors) : status);
 }
 
 /* Points at the times of a group, on the straight pieces between the steps of the study. */
@@ -184,12 +189,7 @@ static dea_status play(struct dea_device_model *model, const struct dea_design *
     dea_free(ctx, both);
   }
   dea_result_destroy(ctx, result);
-  if (status != DEA_OK && !is_fatal(status)) {
-    snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
+  return keep_why(model, status);
 }
 
 static dea_status evaluate(struct dea_device_model *model, const double *p,
@@ -205,8 +205,7 @@ static dea_status evaluate(struct dea_device_model *model, const double *p,
   dea_status status = dea_device_params_build(ctx, &model->file, model->params, model->param_count,
                                               p, &design, &device);
   if (status == DEA_E_DESIGN) {
-    snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
-    dea_context_clear(ctx);
+    keep_why(model, status);
     status = DEA_E_DOMAIN;
   } else if (status == DEA_OK && model->built != NULL) {
     status = model->built(model->user, design, device);
@@ -229,19 +228,6 @@ static void drop_states(struct dea_device_model *model, struct dea_state *states
   for (size_t k = 0; states != NULL && k < model->stop_count; k++) {
     drop_state(model, &states[k]);
   }
-}
-
-dea_status dea_device_model_begin(struct dea_device_model *model)
-{
-  for (size_t k = 0; k < DEA_DEVICE_MEMO; k++) {
-    model->memo[k].points = NULL;
-  }
-  model->states = NULL;
-  if (model->type->load != NULL) {
-    model->states = dea_alloc(model->ctx, model->stop_count, sizeof *model->states);
-    return model->states != NULL ? DEA_OK : DEA_E_MEMORY;
-  }
-  return DEA_OK;
 }
 
 static void forget(struct dea_device_model *model)
@@ -365,6 +351,10 @@ dea_status dea_device_model_points(struct dea_device_model *model, const double 
       *out = model->memo[k].points;
       return DEA_OK;
     }
+  }
+  if (model->states == NULL && model->type->load != NULL) {
+    model->states = dea_alloc(model->ctx, model->stop_count, sizeof *model->states);
+    DEA_TRY_MEMORY(model->states != NULL);
   }
   struct dea_load_point *points = dea_alloc(model->ctx, model->stop_count, sizeof *points);
   dea_status status = points != NULL ? evaluate(model, p, points) : DEA_E_MEMORY;

@@ -29,6 +29,7 @@ struct dea_device_start {
   struct dea_load_point *points; // [stop_count], owned
 };
 
+/* Zero-initialise, and set from file to wanted. */
 struct dea_device_model {
   struct dea_context *ctx;
   struct dea_design_bytes file;
@@ -59,8 +60,7 @@ struct dea_device_model {
   char why[200]; // of the last point that could not be had
 };
 
-/* Starts that need the above to be set from file to stop_count. */
-dea_status dea_device_model_begin(struct dea_device_model *model);
+/* Frees what evaluations have kept. */
 void dea_device_model_end(struct dea_device_model *model);
 /* Which stops are wanted from now on [stop_count]. Where that changes, points that were kept are
  * dropped: none may be lent. */

@@ -27,11 +27,6 @@ static bool is_in_time(const struct dea_device_curve *curve)
   return curve->text->kind.value == DEA_DEVICE_TRANSIENT;
 }
 
-static dea_status no_memory(const struct dea_device_fit *fit)
-{
-  return dea_arena_status(&fit->memory);
-}
-
 /* Whether a quantity is wanted of a file; what is wanted but no quantity is a finding. */
 static bool is_wanted(const struct dea_context *ctx, const struct dea_device_curve_text *text,
                       int column)
@@ -127,7 +122,7 @@ static dea_status add_curve(struct reading *r, int column)
   curve->line = dea_arena_alloc(&fit->memory, from->count, sizeof *curve->line);
   curve->stop = dea_arena_alloc(&fit->memory, from->count, sizeof *curve->stop);
   curve->used = dea_arena_alloc(&fit->memory, from->count, sizeof *curve->used);
-  DEA_TRY(r->ctx, no_memory(fit));
+  DEA_TRY(r->ctx, dea_arena_status(&fit->memory));
   DEA_TRY(r->ctx, read_absolute(r, column, &absolute));
   for (size_t i = 0; i < from->count; i++) {
     const double value = dea_point_get(&from->points[i], column);
@@ -321,7 +316,7 @@ dea_status dea_device_stops_build(struct dea_context *ctx, struct dea_device_fit
   }
   model->voltage_V = dea_arena_alloc(&fit->memory, rows, sizeof *model->voltage_V);
   model->wanted = dea_arena_alloc(&fit->memory, rows, sizeof *model->wanted);
-  DEA_TRY(ctx, no_memory(fit));
+  DEA_TRY(ctx, dea_arena_status(&fit->memory));
   for (size_t g = 0; g < model->group_count; g++) {
     add_stops(fit, model, &model->groups[g]);
   }

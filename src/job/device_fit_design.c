@@ -41,7 +41,7 @@ static void add_head(struct dea_text *out, const struct dea_device_fit *fit)
   }
   for (size_t j = 0; j < fit->param_count; j++) {
     const struct dea_device_param *param = &fit->params[j];
-    const struct dea_fit_value *value = &fit->values[j];
+    const struct dea_fit_value *value = &fit->core.values[j];
     const char *unit = strcmp(param->param.unit, "1") == 0 ? "" : param->param.unit;
     dea_text_add(out, "#   %s = %.6g", param->param.name, value->value);
     if (value->fixed || value->at_bound || isinf(value->std)) {
@@ -163,9 +163,9 @@ static void add_uncertainty(struct dea_text *out, const struct dea_device_fit *f
   size_t known = 0;
   for (size_t j = 0; j < n; j++) {
     const struct dea_fit_param *param = &fit->params[j].param;
-    if (is_known(&fit->values[j])) {
+    if (is_known(&fit->core.values[j])) {
       dea_text_add(out, "%s{name: %s, std: %.6g%s%s}", known++ > 0 ? ", " : "{parameters: [",
-                   param->name, fit->values[j].std, DEA_UNIT_BEHIND(param->unit));
+                   param->name, fit->core.values[j].std, DEA_UNIT_BEHIND(param->unit));
     }
   }
   if (known > 0) {
@@ -173,9 +173,9 @@ static void add_uncertainty(struct dea_text *out, const struct dea_device_fit *f
   }
   const char *separator = "";
   for (size_t j = 0; j < n; j++) {
-    for (size_t k = 0; k < j && is_known(&fit->values[j]); k++) {
-      if (is_known(&fit->values[k])) {
-        dea_text_add(out, "%s%.9f", separator, fit->statistics.correlation[j * n + k]);
+    for (size_t k = 0; k < j && is_known(&fit->core.values[j]); k++) {
+      if (is_known(&fit->core.values[k])) {
+        dea_text_add(out, "%s%.9f", separator, fit->core.statistics.correlation[j * n + k]);
         separator = ", ";
       }
     }
@@ -287,10 +287,7 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
       dea_alloc(ctx, with->count * (1 + DEA_DEVICE_TIES_MAX) + 1, sizeof *changed);
   DEA_TRY_MEMORY(changed != NULL);
   dea_status status = dea_yaml_parse(ctx, file->design->file, file->bytes, file->length, &document);
-  if (status != DEA_OK) {
-    dea_free(ctx, changed);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_free(ctx, changed));
   status = add_values(ctx, device, with, document, changed, &count);
   if (status == DEA_OK && with->uncertainty[0] != '\0') {
     status = dea_yaml_override(ctx, document, "compute.uncertainty", with->uncertainty);
@@ -325,7 +322,7 @@ dea_status dea_device_design_build(struct dea_context *ctx, struct dea_device_fi
 {
   double values[DEA_DEVICE_PARAMS_MAX];
   for (size_t j = 0; j < fit->param_count; j++) {
-    values[j] = fit->values[j].value;
+    values[j] = fit->core.values[j].value;
   }
   struct dea_text uncertainty = {.ctx = ctx};
   void *before = dea_c_locale_enter();

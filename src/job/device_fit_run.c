@@ -27,9 +27,7 @@ struct work {
   char *fine;         // the same for curves in time; NULL: there are none
   size_t length;
   struct dea_device_model model;
-  double start[DEA_DEVICE_PARAMS_MAX], low[DEA_DEVICE_PARAMS_MAX], high[DEA_DEVICE_PARAMS_MAX],
-      scale[DEA_DEVICE_PARAMS_MAX];
-  bool held[DEA_DEVICE_PARAMS_MAX];
+  double start[DEA_DEVICE_PARAMS_MAX];
   bool *slack;                     // [stops]
   bool *wanted;                    // [stops], for dea_device_model_want
   struct dea_load_point *designed; // [stops] of the design itself; NULL: it has none
@@ -85,16 +83,12 @@ static dea_status build_params(struct work *w)
   struct dea_device_fit *fit = w->fit;
   const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
   const struct dea_device_param_source source = {.design = w->design, .device = w->device};
-  fit->param_count = fit->file->parameter_count;
+  fit->param_count = fit->core.param_count = fit->file->parameter_count;
   for (size_t j = 0; j < fit->param_count; j++) {
-    const struct dea_fit_param *param = &fit->params[j].param;
     DEA_TRY(w->ctx,
             dea_device_param_build(w->ctx, &fit->file->parameters[j], &source, &fit->params[j]));
-    w->start[j] = param->start;
-    w->low[j] = param->low;
-    w->high[j] = param->high;
-    w->scale[j] = param->scale;
-    w->held[j] = param->fixed;
+    fit->core.params[j] = fit->params[j].param;
+    w->start[j] = fit->core.params[j].start;
   }
   w->model.params = fit->params;
   w->model.param_count = fit->param_count;
@@ -177,8 +171,8 @@ static dea_status check_uncertainties(struct work *w)
   if (first == NULL) {
     return dea_fail(w->ctx, DEA_E_DESIGN, "no curve is there to be fitted (use: fit)");
   }
-  fit->scale_known = lacking == NULL;
-  fit->scatter = scatter_guess * (most > 0 ? most : 1);
+  fit->core.scale_known = lacking == NULL;
+  fit->core.scatter = scatter_guess * (most > 0 ? most : 1);
   if (lacking != NULL && (known || several)) {
     DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, lacking->text->name.location,
                                     "%s of '%.60s' has no uncertainty: %s", lacking->quantity->key,
@@ -206,7 +200,7 @@ static dea_status residual(void *user, const double *p, double *r)
     const struct dea_device_curve *curve = &fit->curves[c];
     for (size_t i = 0; i < curve->rows; i++) {
       if (curve->used[i]) {
-        const double std = isnan(curve->std[i]) ? fit->scatter : curve->std[i];
+        const double std = isnan(curve->std[i]) ? fit->core.scatter : curve->std[i];
         r[n] = (value_of(points, curve, i) - curve->value[i]) / std;
         if (isnan(r[n++])) {
           return DEA_E_DOMAIN;
@@ -214,12 +208,7 @@ static dea_status residual(void *user, const double *p, double *r)
       }
     }
   }
-  for (size_t j = 0; j < fit->param_count; j++) {
-    const struct dea_fit_param *param = &fit->params[j].param;
-    if (!isnan(param->prior)) {
-      r[n++] = (p[j] - param->prior) / param->prior_std;
-    }
-  }
+  dea_fit_priors_add(fit->core.params, fit->param_count, p, r + n);
   return DEA_OK;
 }
 
@@ -236,18 +225,20 @@ static size_t count_used(const struct dea_device_curve *curve)
 static void build_problem(struct work *w)
 {
   const bool meshed = w->model.type->load != NULL;
+  struct dea_fit_core *core = &w->fit->core;
   size_t rows = 0;
+  core->group_count = 0;
   for (size_t c = 0; c < w->fit->curve_count; c++) {
-    rows += count_used(&w->fit->curves[c]);
+    const size_t used = count_used(&w->fit->curves[c]);
+    if (used > 0) {
+      core->groups[core->group_count++] = (struct dea_lsq_group){rows, used};
+    }
+    rows += used;
   }
-  for (size_t j = 0; j < w->fit->param_count; j++) {
-    rows += isnan(w->fit->params[j].param.prior) ? 0U : 1U;
-  }
+  rows += dea_fit_priors_add(core->params, core->param_count, NULL, NULL);
   w->problem = (struct dea_lsq_problem){.rows = rows,
-                                        .params = w->fit->param_count,
-                                        .low = w->low,
-                                        .high = w->high,
-                                        .scale = w->scale,
+                                        .params = core->param_count,
+                                        .param = core->params,
                                         .step = meshed ? 5e-3 : 1e-3,
                                         .second_order = true,
                                         .tolerance = meshed ? 1e-5 : 1e-10,
@@ -369,7 +360,7 @@ static dea_status check_count(struct work *w)
 {
   size_t open = 0;
   for (size_t j = 0; j < w->fit->param_count; j++) {
-    open += w->held[j] ? 0U : 1U;
+    open += w->fit->core.params[j].fixed ? 0U : 1U;
   }
   if (w->problem.rows >= open && open > 0) {
     return DEA_OK;
@@ -413,7 +404,6 @@ static dea_status prepare(struct work *w)
   w->wanted = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->wanted);
   own = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *own);
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
-  DEA_TRY(w->ctx, dea_device_model_begin(&w->model));
   DEA_TRY(w->ctx, keep_designed(w));
   if (!w->starts_designed) {
     dea_status status = dea_device_model_sweep(&w->model, NULL, w->start, own);
@@ -429,22 +419,25 @@ static dea_status prepare(struct work *w)
 
 // The minimum and what it says --------------------------------------------------------------------
 
-/* Fits; where the film goes slack at other voltages than at the start, again with other rows. */
-static dea_status solve(struct work *w)
+/* Fits, from the values of the round before, if there was one; where the film goes slack at other
+ * voltages than at the start, again with other rows. */
+static dea_status solve(void *user)
 {
+  struct work *w = user;
+  struct dea_lsq_fit *found = &w->fit->core.least_squares;
   struct dea_load_point *points =
       dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *points);
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
   w->fit->settled = false;
   for (int round = 0; round < ROUNDS_MAX && !w->fit->settled; round++) {
-    if (round > 0) {
-      memcpy(w->start, w->fit->least_squares.p, w->problem.params * sizeof *w->start);
-      dea_lsq_free(&w->fit->least_squares);
+    if (found->r != NULL) {
+      memcpy(w->start, found->p, w->problem.params * sizeof *w->start);
+      dea_lsq_free(found);
       build_problem(w);
       DEA_TRY(w->ctx, check_count(w));
     }
-    DEA_TRY(w->ctx, dea_lsq_solve(w->ctx, &w->problem, w->start, w->held, &w->fit->least_squares));
-    DEA_TRY(w->ctx, dea_device_model_sweep(&w->model, NULL, w->fit->least_squares.p, points));
+    DEA_TRY(w->ctx, dea_lsq_solve(w->ctx, &w->problem, w->start, NULL, found));
+    DEA_TRY(w->ctx, dea_device_model_sweep(&w->model, NULL, found->p, points));
     find_slack(w, points, false, w->slack);
     w->fit->settled = !cuts_others(w);
     if (w->fit->settled || round + 1 < ROUNDS_MAX) {
@@ -452,73 +445,6 @@ static dea_status solve(struct work *w)
     }
   }
   return DEA_OK;
-}
-
-static dea_status find_statistics(struct work *w)
-{
-  struct dea_device_fit *fit = w->fit;
-  struct dea_lsq_group groups[DEA_DEVICE_CURVES_MAX];
-  size_t count = 0, at = 0;
-  for (size_t c = 0; c < fit->curve_count; c++) {
-    const size_t rows = count_used(&fit->curves[c]);
-    if (rows > 0) {
-      groups[count++] = (struct dea_lsq_group){at, rows};
-    }
-    at += rows;
-  }
-  DEA_TRY(w->ctx, dea_lsq_statistics_find(w->ctx, &fit->least_squares, groups, count,
-                                          fit->scale_known, &fit->statistics));
-  for (size_t c = 0, g = 0; c < fit->curve_count; c++) {
-    if (count_used(&fit->curves[c]) > 0) {
-      fit->curves[c].lag = fit->statistics.lag[g];
-      fit->curves[c].effective = fit->statistics.effective[g++];
-    }
-  }
-  return DEA_OK;
-}
-
-static dea_status fill_values(struct work *w)
-{
-  struct dea_device_fit *fit = w->fit;
-  const bool quick = w->model.type->load == NULL;
-  for (size_t j = 0; j < fit->param_count; j++) {
-    fit->values[j] = (struct dea_fit_value){.value = fit->least_squares.p[j],
-                                            .std = fit->statistics.std[j],
-                                            .low = NAN,
-                                            .high = NAN,
-                                            .fixed = w->held[j],
-                                            .at_bound = fit->least_squares.at_bound[j]};
-    if (quick || w->options->profile) {
-      DEA_TRY(w->ctx, dea_fit_profile(w->ctx, &w->problem, &fit->least_squares, &fit->statistics, j,
-                                      false, w->options->profile, &fit->values[j]));
-    }
-  }
-  return DEA_OK;
-}
-
-/* From the values of the round before, if there was one. */
-static dea_status solve_round(void *user, const struct dea_lsq_statistics **found)
-{
-  struct work *w = user;
-  struct dea_device_fit *fit = w->fit;
-  if (fit->least_squares.p != NULL) {
-    memcpy(w->start, fit->least_squares.p, w->problem.params * sizeof *w->start);
-  }
-  dea_lsq_free(&fit->least_squares);
-  dea_lsq_statistics_free(&fit->statistics);
-  DEA_TRY(w->ctx, solve(w));
-  *found = &fit->statistics;
-  return find_statistics(w);
-}
-
-static dea_status solve_all(struct work *w)
-{
-  struct dea_device_fit *fit = w->fit;
-  bool prior = false;
-  for (size_t j = 0; j < fit->param_count; j++) {
-    prior = prior || !isnan(fit->params[j].param.prior);
-  }
-  return dea_lsq_weigh(prior && !fit->scale_known, &fit->scatter, solve_round, w);
 }
 
 /* Points at the parameters found, and at each moved by one step of the derivatives up and down;
@@ -534,7 +460,7 @@ static dea_status copy_points(struct work *w, size_t j, double by, struct dea_lo
   double p[DEA_DEVICE_PARAMS_MAX];
   const struct dea_load_point *points;
   *out = NULL;
-  memcpy(p, w->fit->least_squares.p, w->problem.params * sizeof *p);
+  memcpy(p, w->fit->core.least_squares.p, w->problem.params * sizeof *p);
   // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): j < params
   p[j] = p[j] + by;
   dea_status status = dea_device_model_points(&w->model, p, &points);
@@ -553,8 +479,9 @@ static dea_status find_slopes(struct work *w, struct slopes *out)
   *out = (struct slopes){.at = NULL};
   DEA_TRY(w->ctx, copy_points(w, 0, 0, &out->at));
   for (size_t j = 0; j < w->fit->param_count; j++) {
-    out->step[j] = w->held[j] ? 0 : w->problem.step * w->scale[j];
-    if (!w->held[j]) {
+    const struct dea_fit_param *param = &w->fit->core.params[j];
+    out->step[j] = param->fixed ? 0 : w->problem.step * param->scale;
+    if (!param->fixed) {
       DEA_TRY(w->ctx, copy_points(w, j, out->step[j], &out->plus[j]));
       DEA_TRY(w->ctx, copy_points(w, j, -out->step[j], &out->minus[j]));
     }
@@ -585,7 +512,7 @@ static double std_of(const struct work *w, const struct slopes *s, size_t stop, 
   for (size_t j = 0; j < w->fit->param_count; j++) {
     slopes[j] = slope(s, j, stop, column);
   }
-  return dea_lsq_std_of(&w->fit->statistics, slopes);
+  return dea_lsq_std_of(&w->fit->core.statistics, slopes);
 }
 
 static void fill_curve(struct work *w, const struct slopes *s, struct dea_device_curve *curve)
@@ -623,12 +550,12 @@ static double usual_share(const struct dea_device_fit *fit)
     }
     for (size_t i = 0; i < curve->rows; i++) {
       if (curve->used[i] && most > 0) {
-        sum += log((isnan(curve->std[i]) ? fit->scatter : curve->std[i]) / most);
+        sum += log((isnan(curve->std[i]) ? fit->core.scatter : curve->std[i]) / most);
         count++;
       }
     }
   }
-  return count > 0 ? exp(sum / (double)count) * sqrt(fit->statistics.variance) : scatter_guess;
+  return count > 0 ? exp(sum / (double)count) * sqrt(fit->core.statistics.variance) : scatter_guess;
 }
 
 static bool is_measured(const struct dea_device_fit *fit, int column)
@@ -643,7 +570,7 @@ static bool is_measured(const struct dea_device_fit *fit, int column)
 
 /* A quantity over the voltages of the free film, measured as well as the others. */
 static bool propose_quantity(struct work *w, const struct slopes *s, const char *key, double share,
-                             struct dea_device_candidate *out)
+                             struct dea_fit_proposal *out)
 {
   const int column = dea_point_column_find(key);
   const size_t n = w->fit->param_count;
@@ -670,7 +597,7 @@ static bool propose_quantity(struct work *w, const struct slopes *s, const char 
       J[j * rows + i] = isfinite(value) ? value : 0;
     }
   }
-  *out = (struct dea_device_candidate){.rows = rows, .J = J};
+  *out = (struct dea_fit_proposal){.rows = rows, .J = J};
   snprintf(out->what, sizeof out->what, "%s over the voltage (to %.2g %%)",
            dea_point_columns[column].header, 100 * share);
   return true;
@@ -681,7 +608,7 @@ static dea_status report_fit(struct work *w, const struct slopes *s)
   static const char *const keys[] = {"electrode_stretch", "capacitance_F", "fibre_tip_z_m",
                                      "centre_z_m",        "highest_z_m",   "lowest_z_m"};
   enum { KEYS = sizeof keys / sizeof keys[0] };
-  struct dea_device_candidate candidates[KEYS + DEA_DEVICE_PARAMS_MAX];
+  struct dea_fit_proposal candidates[KEYS + DEA_DEVICE_PARAMS_MAX];
   const double share = usual_share(w->fit);
   const size_t n = w->fit->param_count;
   size_t count = 0;
@@ -690,13 +617,14 @@ static dea_status report_fit(struct work *w, const struct slopes *s)
   }
   for (size_t j = 0; j < n; j++) {
     double *J = dea_arena_alloc(&w->fit->memory, n, sizeof *J);
-    if (!w->held[j] && J != NULL) {
+    const struct dea_fit_param *param = &w->fit->core.params[j];
+    if (!param->fixed && J != NULL) {
       const double own = fmax(share, 0.01); // a gauge is no better
-      J[j] = 1 / (own * w->scale[j]);
+      J[j] = 1 / (own * param->scale);
       candidates[count].rows = 1;
       candidates[count].J = J;
       snprintf(candidates[count].what, sizeof candidates[count].what, "%s by itself (to %.2g %%)",
-               w->fit->params[j].param.name, 100 * own);
+               param->name, 100 * own);
       count++;
     }
   }
@@ -712,19 +640,17 @@ static dea_status finish(struct work *w)
   struct dea_device_fit *fit = w->fit;
   struct slopes slopes;
   DEA_TRY(w->ctx, find_slopes(w, &slopes)); // those of the last derivatives
-  DEA_TRY(w->ctx, fill_values(w));
-  double squares = 0;
-  size_t rows = 0;
-  for (size_t c = 0; c < fit->curve_count; c++) {
+  DEA_TRY(w->ctx, dea_fit_core_values(w->ctx, &w->problem, w->model.type->load == NULL,
+                                      w->options->profile, &fit->core));
+  for (size_t c = 0, g = 0; c < fit->curve_count; c++) {
     fill_curve(w, &slopes, &fit->curves[c]);
-    for (size_t i = 0; i < fit->curves[c].rows; i++) {
-      const double off = fit->curves[c].model[i] - fit->curves[c].value[i];
-      squares += fit->curves[c].used[i] ? off * off : 0;
-      rows += fit->curves[c].used[i] ? 1U : 0U;
+    if (count_used(&fit->curves[c]) > 0) {
+      fit->curves[c].lag = fit->core.statistics.lag[g];
+      fit->curves[c].effective = fit->core.statistics.effective[g++];
     }
   }
   DEA_TRY(w->ctx, report_fit(w, &slopes));
-  fit->scatter = sqrt(squares / (double)(rows > 0 ? rows : 1));
+  dea_fit_core_scatter(&fit->core);
   fit->evaluations = w->model.evaluations;
   const struct dea_design_bytes file = {w->design, w->bytes, w->length};
   return dea_device_design_build(w->ctx, fit, &file, w->device);
@@ -736,48 +662,28 @@ static dea_status run(struct work *w)
   DEA_TRY(w->ctx, read_design(w));
   DEA_TRY(w->ctx, build_params(w));
   DEA_TRY(w->ctx, prepare(w));
-  DEA_TRY(w->ctx, solve_all(w));
+  DEA_TRY(w->ctx, dea_fit_core_solve(w->ctx, &w->fit->core, solve, w));
   return finish(w);
 }
 
-void dea_device_fit_destroy(struct dea_context *ctx, struct dea_device_fit *fit)
+dea_status dea_device_fit_run(struct dea_context *ctx, const struct dea_device_file *file,
+                              const struct dea_fit_options *options, struct dea_device_fit *fit)
 {
-  if (fit != NULL) {
-    dea_lsq_statistics_free(&fit->statistics);
-    dea_lsq_free(&fit->least_squares);
-    dea_text_free(&fit->design);
-    dea_arena_free(&fit->memory);
-    dea_free(ctx, fit);
-  }
+  struct work w = {.ctx = ctx, .fit = fit, .options = options};
+  *fit = (struct dea_device_fit){.file = file, .design = {.ctx = ctx}, .memory = {.ctx = ctx}};
+  dea_status status = run(&w);
+  dea_device_model_end(&w.model);
+  dea_device_destroy(ctx, w.device);
+  dea_design_destroy(ctx, w.design);
+  dea_free(ctx, w.fine);
+  dea_free(ctx, w.bytes);
+  dea_free(ctx, w.path);
+  return DEA_CHAIN(ctx, status);
 }
 
-dea_status dea_device_fit_run(struct dea_context *ctx, const struct dea_device_file *file,
-                              const struct dea_fit_options *options, struct dea_device_fit **out)
+void dea_device_fit_free(struct dea_device_fit *fit)
 {
-  *out = NULL;
-  struct dea_device_fit *fit = dea_alloc(ctx, 1, sizeof *fit);
-  struct work *w = dea_alloc(ctx, 1, sizeof *w);
-  dea_status status = DEA_E_MEMORY;
-  if (fit != NULL && w != NULL) {
-    *fit = (struct dea_device_fit){.file = file, .design = {.ctx = ctx}, .memory = {.ctx = ctx}};
-    *w = (struct work){.ctx = ctx, .fit = fit, .options = options};
-    status = run(w);
-    dea_device_model_end(&w->model);
-    dea_device_destroy(ctx, w->device);
-    dea_design_destroy(ctx, w->design);
-    dea_free(ctx, w->fine);
-    dea_free(ctx, w->bytes);
-    dea_free(ctx, w->path);
-  }
-  dea_free(ctx, w);
-  if (status != DEA_OK) {
-    if (fit != NULL && fit->memory.ctx != NULL) {
-      dea_device_fit_destroy(ctx, fit);
-    } else {
-      dea_free(ctx, fit);
-    }
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
-  *out = fit;
-  return DEA_OK;
+  dea_fit_core_free(&fit->core);
+  dea_text_free(&fit->design);
+  dea_arena_free(&fit->memory);
 }

@@ -176,10 +176,7 @@ dea_status dea_catalogue_read(struct dea_context *ctx, const char *name,
   dea_status status = load(ctx, name, location, &entry->file, &bytes, &length);
   status = status == DEA_OK ? read_entry(ctx, name, bytes, length, entry) : status;
   dea_free(ctx, bytes);
-  if (status != DEA_OK) {
-    dea_catalogue_destroy(ctx, entry);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_catalogue_destroy(ctx, entry));
   *out = entry;
   return DEA_OK;
 }
@@ -194,24 +191,22 @@ void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *
   dea_free(ctx, entry);
 }
 
-/* Sets of one kind: a label and the notes every `stride` bytes. */
-struct sets {
-  const char *what; // "law set"
-  const struct dea_label *ids;
-  const struct dea_data_notes *notes;
-  size_t count, stride;
-};
-
-static const char *id_of(const struct sets *sets, size_t i)
+const struct dea_set_head *dea_set_head_at(const void *sets, size_t size, size_t i)
 {
-  const char *label = (const char *)sets->ids + i * sets->stride;
-  return ((const struct dea_label *)(const void *)label)->text;
+  return (const void *)((const char *)sets + i * size);
 }
 
-static const struct dea_data_notes *notes_of(const struct sets *sets, size_t i)
+/* Sets of one kind, and which of them is wanted. */
+struct sets {
+  const char *what; // "law set"
+  const void *first;
+  size_t count, size;
+  const struct dea_label *wanted; // as of dea_material_choice
+};
+
+static const struct dea_set_head *head_at(const struct sets *sets, size_t i)
 {
-  const char *notes = (const char *)sets->notes + i * sets->stride;
-  return (const struct dea_data_notes *)(const void *)notes;
+  return dea_set_head_at(sets->first, sets->size, i);
 }
 
 static const double near_K = 5; // so far the numbers of one temperature are taken for another's
@@ -237,7 +232,7 @@ static int find_nearest(const struct sets *sets, const struct dea_quantity *temp
   int nearest = 0;
   double least_K = INFINITY;
   for (size_t i = 0; i < sets->count && is_given(temperature); i++) {
-    const double off_K = find_distance(notes_of(sets, i), temperature->si);
+    const double off_K = find_distance(&head_at(sets, i)->notes, temperature->si);
     if (off_K < least_K) {
       nearest = (int)i;
       least_K = off_K;
@@ -256,7 +251,8 @@ static dea_status check_temperature(struct dea_context *ctx, const char *materia
   if (!is_given(temperature) || sets->count == 0) {
     return DEA_OK;
   }
-  const struct dea_data_notes *notes = notes_of(sets, (size_t)set);
+  const struct dea_set_head *head = head_at(sets, (size_t)set);
+  const struct dea_data_notes *notes = &head->notes;
   const double off_K = find_distance(notes, temperature->si);
   if (isnan(off_K)) {
     dea_text_add(unknown, "%s%s", dea_text_get(unknown)[0] != '\0' ? ", " : "", sets->what);
@@ -271,30 +267,29 @@ static dea_status check_temperature(struct dea_context *ctx, const char *materia
            (is_range ? notes->temperatures.limits[0] : notes->temperature_K).si - freezing_K,
            notes->temperatures.limits[1].si - freezing_K);
   return dea_finding_add(ctx, DEA_WARNING, temperature->location,
-                         "the %s '%s' of '%s' %s, not at %.4g degC", sets->what,
-                         id_of(sets, (size_t)set), material, at, temperature->si - freezing_K);
+                         "the %s '%s' of '%s' %s, not at %.4g degC", sets->what, head->id.text,
+                         material, at, temperature->si - freezing_K);
 }
 
-/* Index of the set with that id (see dea_material_choice for ""); -1 after adding a finding. */
+/* Index of the set that is wanted; -1 after adding a finding. */
 static int find_set(struct dea_context *ctx, const struct dea_material_data *data,
-                    const struct sets *sets, const struct dea_label *label,
-                    const struct dea_quantity *temperature)
+                    const struct sets *sets, const struct dea_quantity *temperature)
 {
   const char *names[DEA_MATERIAL_SETS_MAX] = {NULL}, *what = sets->what;
   char hint[DEA_HINT_SIZE];
-  const char *wanted = label != NULL ? label->text : "";
+  const char *wanted = sets->wanted != NULL ? sets->wanted->text : "";
   if (wanted[0] == '\0') {
     return find_nearest(sets, temperature);
   }
   for (size_t i = 0; i < sets->count; i++) {
-    names[i] = id_of(sets, i);
+    names[i] = head_at(sets, i)->id.text;
     if (strcmp(names[i], wanted) == 0) {
       return (int)i;
     }
   }
   dea_name_hint_list(wanted, names, sets->count, " All: ", "; there are: ", hint);
   dea_status status =
-      dea_finding_add(ctx, DEA_ERROR, label->location, "material '%s' has no %s '%.60s'%s",
+      dea_finding_add(ctx, DEA_ERROR, sets->wanted->location, "material '%s' has no %s '%.60s'%s",
                       data->name.text, what, wanted, hint);
   if (status == DEA_OK) {
     dea_fail(ctx, DEA_E_DESIGN, "material '%s' has no %s '%.60s'", data->name.text, what, wanted);
@@ -319,16 +314,16 @@ static void read_uncertainties(const struct dea_law_set *set, struct dea_materia
 
 static void read_law(const struct dea_law_set *set, struct dea_material *out)
 {
-  snprintf(out->law_id, sizeof out->law_id, "%.63s", set->id.text);
+  snprintf(out->law_id, sizeof out->law_id, "%.63s", set->head.id.text);
   out->law = set->law;
   for (size_t i = 0; i < set->law->param_count; i++) {
     out->param[i] = isnan(set->param[i].si) ? 0 : set->param[i].si; // optional, not given
   }
   read_uncertainties(set, out);
   out->fibre_angle_rad = set->fibre_angle_rad.si;
-  if (set->range.count == 2) {
-    out->stretch_min = set->range.limits[0].si;
-    out->stretch_max = set->range.limits[1].si;
+  if (set->head.range.count == 2) {
+    out->stretch_min = set->head.range.limits[0].si;
+    out->stretch_max = set->head.range.limits[1].si;
   }
 }
 
@@ -364,11 +359,12 @@ static dea_status read_viscosity(struct dea_context *ctx, const struct dea_visco
 {
   double shift = 1;
   if (is_given(temperature) && set->has_wlf) { // a temperature out of range: its end
-    const struct dea_quantity *limits = set->notes.temperatures.limits;
+    const struct dea_data_notes *notes = &set->head.notes;
+    const struct dea_quantity *limits = notes->temperatures.limits;
     const double at_K = fmin(fmax(temperature->si, limits[0].si), limits[1].si);
-    shift = dea_branch_shift(set->wlf_c1.si, set->wlf_c2_K.si, at_K - set->notes.temperature_K.si);
+    shift = dea_branch_shift(set->wlf_c1.si, set->wlf_c2_K.si, at_K - notes->temperature_K.si);
   }
-  snprintf(out->viscosity_id, sizeof out->viscosity_id, "%.63s", set->id.text);
+  snprintf(out->viscosity_id, sizeof out->viscosity_id, "%.63s", set->head.id.text);
   out->viscosity_assumed = set->assumed.value == 1;
   out->branch_count = set->branch_count;
   for (size_t i = 0; i < set->branch_count; i++) {
@@ -390,33 +386,35 @@ static dea_status read_viscosity(struct dea_context *ctx, const struct dea_visco
 dea_status dea_material_select(struct dea_context *ctx, const struct dea_material_data *data,
                                const struct dea_material_choice *choice, struct dea_material *out)
 {
-#define SETS(what, member, counter)                                                                \
+  const bool viscous = choice->viscosity == NULL || strcmp(choice->viscosity->text, "none") != 0;
+#define SETS(what, member, counter, wanted)                                                        \
   {                                                                                                \
-    what, &data->member[0].id, &data->member[0].notes, data->counter, sizeof data->member[0]       \
+    what, data->member, data->counter, sizeof data->member[0], wanted                              \
   }
-  const struct sets laws = SETS("law set", laws, law_count);
-  const struct sets permittivities = SETS("permittivity", permittivity, permittivity_count);
-  const struct sets breakdowns = SETS("breakdown field", breakdown, breakdown_count);
-  const struct sets viscosities = SETS("viscosity", viscosity, viscosity_count);
+  const struct sets all[] = {
+      SETS("law set", laws, law_count, choice->law),
+      SETS("permittivity", permittivity, permittivity_count, choice->permittivity),
+      SETS("breakdown field", breakdown, breakdown_count, choice->breakdown),
+      SETS("viscosity", viscosity, viscosity_count, viscous ? choice->viscosity : NULL),
+  };
 #undef SETS
+  enum { LAW, PERMITTIVITY, BREAKDOWN, VISCOSITY, KINDS };
   const struct dea_quantity *temperature = choice->temperature;
+  int chosen[KINDS];
+  bool found = true;
   *out = (struct dea_material){0};
   snprintf(out->name, sizeof out->name, "%.63s", data->name.text);
-  int law = find_set(ctx, data, &laws, choice->law, temperature);
-  int permittivity = find_set(ctx, data, &permittivities, choice->permittivity, temperature);
-  int breakdown = find_set(ctx, data, &breakdowns, choice->breakdown, temperature);
-  bool viscous = choice->viscosity == NULL || strcmp(choice->viscosity->text, "none") != 0;
-  int viscosity =
-      find_set(ctx, data, &viscosities, viscous ? choice->viscosity : NULL, temperature);
-  if (law < 0 || permittivity < 0 || breakdown < 0 || viscosity < 0) {
+  for (int k = 0; k < KINDS; k++) {
+    chosen[k] = find_set(ctx, data, &all[k], temperature);
+    found = found && chosen[k] >= 0;
+  }
+  if (!found) {
     return dea_context_status(ctx);
   }
-  const struct sets *const all[] = {&laws, &permittivities, &breakdowns, &viscosities};
-  const int chosen[] = {law, permittivity, breakdown, viscosity};
   struct dea_text unknown = {.ctx = ctx};
   dea_status status = DEA_OK;
-  for (size_t i = 0; i < sizeof all / sizeof all[0] - !viscous && status == DEA_OK; i++) {
-    status = check_temperature(ctx, out->name, all[i], chosen[i], temperature, &unknown);
+  for (int k = 0; k < KINDS - !viscous && status == DEA_OK; k++) {
+    status = check_temperature(ctx, out->name, &all[k], chosen[k], temperature, &unknown);
   }
   if (status == DEA_OK && dea_text_get(&unknown)[0] != '\0') {
     status = dea_finding_add(ctx, DEA_NOTE, temperature->location,
@@ -426,17 +424,17 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
   dea_text_free(&unknown);
   DEA_TRY(ctx, status);
   if (data->law_count > 0) {
-    read_law(&data->laws[law], out);
+    read_law(&data->laws[chosen[LAW]], out);
   }
   if (data->permittivity_count > 0) {
-    const struct dea_permittivity_set *set = &data->permittivity[permittivity];
+    const struct dea_permittivity_set *set = &data->permittivity[chosen[PERMITTIVITY]];
     out->permittivity = (struct dea_permittivity){set->at_rest.si, set->slope.si};
   }
   if (data->breakdown_count > 0) {
-    read_breakdown(&data->breakdown[breakdown], &out->breakdown);
+    read_breakdown(&data->breakdown[chosen[BREAKDOWN]], &out->breakdown);
   }
   if (viscous && data->viscosity_count > 0) {
-    DEA_TRY(ctx, read_viscosity(ctx, &data->viscosity[viscosity], temperature, out));
+    DEA_TRY(ctx, read_viscosity(ctx, &data->viscosity[chosen[VISCOSITY]], temperature, out));
   }
   if (data->has_resistivity) {
     out->resistivity_ohm_m = data->resistivity.value_ohm_m.si;

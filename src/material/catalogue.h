@@ -24,9 +24,17 @@ struct dea_data_notes {
   struct dea_data_range temperatures; // at which it holds too
 };
 
+/* What sets of all kinds begin with. */
+struct dea_set_head {
+  struct dea_label id;
+  struct dea_data_range range; // of stretch; not of a viscosity
+  struct dea_data_notes notes;
+};
+
 /* Parameters of one law. */
 struct dea_law_set {
-  struct dea_label id, law_name;
+  struct dea_set_head head;
+  struct dea_label law_name;
   const struct dea_law *law;         // NULL after an error in law_name
   const struct dea_node *parameters; // section as written; lent
   struct dea_quantity param[DEA_LAW_PARAM_MAX];
@@ -36,28 +44,22 @@ struct dea_law_set {
   struct dea_quantity correlations[DEA_LAW_PARAM_MAX * (DEA_LAW_PARAM_MAX - 1) / 2];
   size_t correlation_count; // 0: not given
   struct dea_quantity fibre_angle_rad;
-  struct dea_data_range range;
-  struct dea_data_notes notes;
 };
 
 struct dea_permittivity_set {
-  struct dea_label id;
+  struct dea_set_head head;
   struct dea_quantity at_rest, slope;
   struct dea_data_range values; // of at_rest
-  struct dea_data_range range;
-  struct dea_data_notes notes;
 };
 
 struct dea_breakdown_set {
-  struct dea_label id;
+  struct dea_set_head head;
   struct dea_quantity at_rest_V_per_m;
   struct dea_data_range values;                        // of at_rest
   struct dea_quantity exponent;                        // NAN when unknown; so the next two pairs
   struct dea_quantity thickness_exponent, thickness_m; // thickness that at_rest belongs to
   struct dea_quantity weibull_shape, area_m2;          // area that at_rest belongs to
   struct dea_quantity electrode_factor;                // 1 when not given
-  struct dea_data_range range;
-  struct dea_data_notes notes;
 };
 
 /* One branch of a viscosity: shear modulus as such or as a share of the law's at rest. */
@@ -67,7 +69,7 @@ struct dea_branch_data {
 };
 
 struct dea_viscosity_set {
-  struct dea_label id;
+  struct dea_set_head head;
   struct dea_choice assumed; // 1: plausible numbers, not measured ones
   struct dea_branch_data branches[DEA_BRANCHES_MAX];
   size_t branch_count;
@@ -75,7 +77,6 @@ struct dea_viscosity_set {
    * uncertainties; NAN: not given. */
   bool has_wlf;
   struct dea_quantity wlf_c1, wlf_c2_K, wlf_c1_std, wlf_c2_std_K;
-  struct dea_data_notes notes;
 };
 
 enum dea_material_kind { DEA_ELASTOMER, DEA_PLASTIC, DEA_ELECTRODE_MATERIAL };
@@ -110,6 +111,9 @@ struct dea_material_data {
   size_t law_count, permittivity_count, breakdown_count;
 };
 
+/* Head i of sets of one kind, each of `size` bytes. */
+const struct dea_set_head *dea_set_head_at(const void *sets, size_t size, size_t i);
+
 /* Schema of a data file, and of a material in a design (the same without the version). */
 extern const struct dea_record dea_material_file_record, dea_material_inline_record;
 
@@ -137,8 +141,8 @@ dea_status dea_catalogue_read(struct dea_context *ctx, const char *name,
 /* NULL is fine. */
 void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *entry);
 
-/* Which sets of a material are wanted; "" or NULL for the one that was measured nearest to the
- * temperature, or the first where none is known, and "none" for no viscosity. */
+/* Which sets of a material are wanted, lent; an empty label or NULL for the one that was measured
+ * nearest to the temperature, or the first where none is known, and "none" for no viscosity. */
 struct dea_material_choice {
   const struct dea_label *law, *permittivity, *breakdown, *viscosity;
   const struct dea_quantity *temperature; // of the device; NULL or absent: not given

@@ -102,7 +102,7 @@ static void add_law(struct dea_text *out, const struct dea_law_set *set)
     } else {
       add_row(out, what, set->param[i].si, param->unit);
     }
-    add_notes(out, &set->notes);
+    add_notes(out, &set->head.notes);
   }
 }
 
@@ -118,7 +118,7 @@ static void add_viscosity(struct dea_text *out, const struct dea_viscosity_set *
                  set->assumed.value == 1 ? " (assumed)" : "", i + 1,
                  share ? 100.0 * branch->ratio.si : 1e-3 * branch->modulus_Pa.si,
                  share ? "% of the shear modulus" : "kPa", branch->time_s.si);
-    add_notes(out, &set->notes);
+    add_notes(out, &set->head.notes);
   }
 }
 
@@ -133,7 +133,7 @@ static void add_breakdown(struct dea_text *out, const struct dea_breakdown_set *
              1e-6 * set->values.limits[0].si, 1e-6 * set->values.limits[1].si);
   }
   add_row(out, what, 1e-6 * set->at_rest_V_per_m.si, unit);
-  add_notes(out, &set->notes);
+  add_notes(out, &set->head.notes);
   if (used->at_rest_V_per_m != set->at_rest_V_per_m.si || used->exponent != used->law.exponent) {
     snprintf(what, sizeof what, "of this film; grows with the stretch to the power %.3g",
              used->exponent);
@@ -161,14 +161,15 @@ static void add_material(struct dea_report *report, const struct dea_material_da
   dea_table_begin(report, caption);
   dea_table_head(report, "Property|#Value|Uncertainty|Range|Source");
   if (used->law != NULL) {
-    FIND_SET(data->laws, data->law_count, strcmp(data->laws[i].id.text, used->law_id) == 0, law)
+    FIND_SET(data->laws, data->law_count, strcmp(data->laws[i].head.id.text, used->law_id) == 0,
+             law)
     add_law(out, &data->laws[law]);
   }
   if (data->permittivity_count > 0) {
     FIND_SET(data->permittivity, data->permittivity_count,
              data->permittivity[i].at_rest.si == used->permittivity.at_rest, set)
     add_row(out, "relative permittivity", data->permittivity[set].at_rest.si, "1");
-    add_notes(out, &data->permittivity[set].notes);
+    add_notes(out, &data->permittivity[set].head.notes);
   }
   if (data->breakdown_count > 0) {
     FIND_SET(data->breakdown, data->breakdown_count,
@@ -177,7 +178,7 @@ static void add_material(struct dea_report *report, const struct dea_material_da
   }
   if (used->viscosity_id[0] != '\0' && data->viscosity_count > 0) { // "" for none
     FIND_SET(data->viscosity, data->viscosity_count,
-             strcmp(data->viscosity[i].id.text, used->viscosity_id) == 0, set)
+             strcmp(data->viscosity[i].head.id.text, used->viscosity_id) == 0, set)
     add_viscosity(out, &data->viscosity[set]);
   }
   if (data->has_elastic) {

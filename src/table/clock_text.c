@@ -1,4 +1,7 @@
+#define _DEFAULT_SOURCE // timegm
 #include "table/clock_text.h"
+
+#include <time.h>
 
 static const double day_s = 86400;
 
@@ -28,20 +31,12 @@ static bool read_letter(struct dea_slice *field, const char *one_of, char *found
   return false;
 }
 
-/* Days since 1970-01-01 in the calendar of today; false: there is no such day. */
+/* Days since 1970-01-01; false: there is no such day. */
 static bool days_of(int year, int month, int day, double *days)
 {
-  static const int before[] = {0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334, 365};
-  bool branch_jump = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
-  if (month < 1 || month > 12 || day < 1 || year < 1900 || year > 2200 ||
-      day > before[month] - before[month - 1] + (branch_jump && month == 2)) {
-    return false;
-  }
-  int past = year - 1;
-  int branch_jumps = past / 4 - past / 100 + past / 400 - 477; // since 1970
-  *days = 365.0 * (year - 1970) + branch_jumps + before[month - 1] + (branch_jump && month > 2) +
-          day - 1;
-  return true;
+  struct tm date = {.tm_year = year - 1900, .tm_mon = month - 1, .tm_mday = day};
+  *days = (double)timegm(&date) / day_s; // carries a 31st of April over
+  return year >= 1900 && year <= 2200 && date.tm_mon == month - 1 && date.tm_mday == day;
 }
 
 /* A date and what parts it from the time; true and nothing taken when there is none. */

@@ -412,10 +412,7 @@ dea_status dea_csv_columns_read(struct dea_context *ctx, const char *file,
   out->file = r.fields.file;
   status = status == DEA_OK ? read_fields(&r) : status;
   free_fields(ctx, &r.fields);
-  if (status != DEA_OK) {
-    dea_csv_columns_free(ctx, out);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_csv_columns_free(ctx, out));
   return DEA_OK;
 }
 

@@ -184,7 +184,7 @@ static dea_status read_clock(struct dea_context *ctx, struct dea_slice line, cha
   }
   dea_title_split(ctx, name, &name, &unit);
   snprintf(key, sizeof key, "%.*s", (int)name.length, name.text);
-  if (dea_word_clock(key) == DEA_CLOCK_NOTHING) {
+  if (dea_word_clock(key) == DEA_WORD_NONE) {
     return DEA_OK;
   }
   rest = (struct dea_slice){line.text + n + 1, line.length - n - 1};

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 /* Text of a file as UTF-8: what is none is taken for Latin-1. Control characters become blanks. */
 static char *copy_text(struct dea_context *ctx, const char *text, size_t length)
@@ -45,14 +46,9 @@ struct dea_table_column *dea_table_add(struct dea_context *ctx, struct dea_table
              (int)DEA_TABLE_COLUMNS_MAX);
     return NULL;
   }
-  if (table->column_count == table->column_room) {
-    size_t more = 2 * table->column_room + 8;
-    void *moved = dea_resize(ctx, table->columns, more, sizeof *table->columns);
-    if (moved == NULL) {
-      return NULL;
-    }
-    table->columns = moved;
-    table->column_room = more;
+  if (dea_array_grow(ctx, &table->columns, table->column_count, &table->column_room,
+                     sizeof *table->columns) != DEA_OK) {
+    return NULL;
   }
   struct dea_table_column *column = &table->columns[table->column_count];
   *column = (struct dea_table_column){.start = 0, .interval = NAN, .origin_s = NAN};
@@ -110,10 +106,5 @@ void dea_table_destroy(struct dea_context *ctx, struct dea_table *table)
 bool dea_name_ends(const char *file, const char *outcome)
 {
   size_t n = strlen(file), m = strlen(outcome);
-  bool same = n >= m;
-  for (size_t i = 0; same && i < m; i++) {
-    char c = file[n - m + i];
-    same = (c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c) == outcome[i];
-  }
-  return same;
+  return n >= m && strcasecmp(file + n - m, outcome) == 0;
 }

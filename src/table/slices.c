@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
+#include <strings.h>
 
 bool dea_lines_next(struct dea_lines *lines, struct dea_slice *line)
 {
@@ -41,25 +42,16 @@ struct dea_slice dea_slice_trim(struct dea_slice slice)
   return slice;
 }
 
-static bool same_letters(const char *text, const char *word, size_t length)
-{
-  for (size_t i = 0; i < length; i++) {
-    if (tolower((unsigned char)text[i]) != tolower((unsigned char)word[i])) {
-      return false;
-    }
-  }
-  return true;
-}
-
 bool dea_slice_starts(struct dea_slice slice, const char *with)
 {
   size_t n = strlen(with);
-  return slice.length >= n && same_letters(slice.text, with, n);
+  return slice.length >= n && strncasecmp(slice.text, with, n) == 0;
 }
 
 bool dea_slice_is(struct dea_slice slice, const char *word)
 {
-  return slice.length == strlen(word) && same_letters(slice.text, word, slice.length);
+  return slice.length == strlen(word) &&
+         (slice.length == 0 || strncasecmp(slice.text, word, slice.length) == 0);
 }
 
 size_t dea_slice_find(struct dea_slice slice, const char *part)

@@ -118,15 +118,7 @@ static bool fold_unit(struct dea_slice unit, char out[UNIT_SIZE])
 bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit)
 {
   // without a factor to SI
-  static const char *const others[] = {"\xc2\xb0"
-                                       "C",
-                                       "\xb0"
-                                       "C",
-                                       "degC",
-                                       "a.u.",
-                                       "-",
-                                       "1",
-                                       "counts"};
+  static const char *const others[] = {"\302\260C", "\260C", "degC", "a.u.", "-", "1", "counts"};
   char text[UNIT_SIZE];
   double factor;
   for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {

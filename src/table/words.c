@@ -140,13 +140,10 @@ enum dea_word dea_word_of_quantity(const char *name)
              : dea_word_find(name, DEA_WORD_TIME, DEA_WORD_FORCE);
 }
 
-enum dea_clock_part dea_word_clock(const char *name)
+enum dea_word dea_word_clock(const char *name)
 {
   const char *dot = strrchr(name, '.'); // of a struct: data.fs
-  const enum dea_word word =
-      dea_word_find(dot != NULL ? dot + 1 : name, DEA_WORD_RATE, DEA_WORD_START);
-  return word == DEA_WORD_NONE ? DEA_CLOCK_NOTHING
-                               : (enum dea_clock_part)(DEA_CLOCK_RATE + (word - DEA_WORD_RATE));
+  return dea_word_find(dot != NULL ? dot + 1 : name, DEA_WORD_RATE, DEA_WORD_START);
 }
 
 bool dea_word_takes_ampere(struct dea_slice name)

@@ -23,8 +23,7 @@ enum dea_word {
 enum dea_word dea_word_find(const char *name, enum dea_word first, enum dea_word last);
 /* TIME to FORCE, or UNCERTAINTY: of another column, "z std". */
 enum dea_word dea_word_of_quantity(const char *name);
-/* What a single number of that name says of the clock: a rate [Hz], an interval or a start [s]. */
-enum dea_clock_part { DEA_CLOCK_NOTHING, DEA_CLOCK_RATE, DEA_CLOCK_INTERVAL, DEA_CLOCK_START };
-enum dea_clock_part dea_word_clock(const char *name);
+/* What a single number of that name says of the clock: RATE [Hz], INTERVAL or START [s]; NONE. */
+enum dea_word dea_word_clock(const char *name);
 /* Whether 'A' behind that name is a unit without brackets: "channel_A" is no current. */
 bool dea_word_takes_ampere(struct dea_slice name);

@@ -161,24 +161,22 @@ bool dea_waveform_cycle(const struct dea_waveform *waveform, size_t number,
 
 // Making -----------------------------------------------------------------------------------------
 
-dea_status dea_wave_room(struct dea_context *ctx, struct dea_waveform *waveform, size_t knots,
-                         size_t blocks)
+void dea_wave_add(struct dea_waveform *w, double phase, double offset_s, double value_V)
 {
-  waveform->ctx = ctx;
-  waveform->knots = dea_alloc(ctx, knots, sizeof *waveform->knots);
-  waveform->blocks = dea_alloc(ctx, blocks, sizeof *waveform->blocks);
-  return waveform->knots != NULL && waveform->blocks != NULL ? DEA_OK : DEA_E_MEMORY;
+  w->failed = w->failed || dea_array_grow(w->ctx, &w->knots, w->knot_count, &w->knot_capacity,
+                                          sizeof *w->knots) != DEA_OK;
+  if (!w->failed) {
+    w->knots[w->knot_count++] = (struct dea_wave_knot){phase, offset_s, value_V};
+    w->blocks[w->block_count - 1].count++;
+  }
 }
 
-void dea_wave_add(struct dea_waveform *waveform, double phase, double offset_s, double value_V)
+void dea_wave_open(struct dea_waveform *w, double start_s, double frequency_Hz, size_t cycles)
 {
-  waveform->knots[waveform->knot_count++] = (struct dea_wave_knot){phase, offset_s, value_V};
-  waveform->blocks[waveform->block_count - 1].count++;
-}
-
-void dea_wave_open(struct dea_waveform *waveform, double start_s, double frequency_Hz,
-                   size_t cycles)
-{
-  waveform->blocks[waveform->block_count++] =
-      (struct dea_wave_block){start_s, frequency_Hz, cycles, waveform->knot_count, 0};
+  w->failed = w->failed || dea_array_grow(w->ctx, &w->blocks, w->block_count, &w->block_capacity,
+                                          sizeof *w->blocks) != DEA_OK;
+  if (!w->failed) {
+    w->blocks[w->block_count++] =
+        (struct dea_wave_block){start_s, frequency_Hz, cycles, w->knot_count, 0};
+  }
 }

@@ -12,6 +12,8 @@ enum { LEVELS_MAX = 200, VOLTAGE_GROUP = 1 };
 
 /* What the keys of all kinds are read into. */
 struct raw {
+  struct dea_context *ctx;
+  const char *beside; // the file from whose folder paths count
   struct dea_label kind, file;
   struct dea_quantity voltage_V, from_V, to_V, low_V, high_V, mean_V, amplitude_V;
   struct dea_quantity step_V, values_V[LEVELS_MAX];
@@ -51,11 +53,8 @@ static const struct dea_field constant_fields[] = {
     TIME(duration_s, "duration", "how long it lasts", .above_min = true, .default_text = "10 s"),
 };
 
-static dea_status build_constant(const struct dea_reader *reader, const struct raw *raw,
-                                 const char *beside, struct dea_waveform *out)
+static dea_status build_constant(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)beside;
-  DEA_TRY(reader->ctx, dea_wave_room(reader->ctx, out, 1, 1));
   out->end_s = raw->duration_s.si;
   dea_wave_open(out, 0, 1 / out->end_s, 1);
   dea_wave_add(out, 0, 0, raw->voltage_V.si);
@@ -72,17 +71,14 @@ static const struct dea_field step_fields[] = {
          .default_text = "10 s"),
 };
 
-static dea_status build_step(const struct dea_reader *reader, const struct raw *raw,
-                             const char *beside, struct dea_waveform *out)
+static dea_status build_step(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)beside;
   out->end_s = raw->duration_s.si;
   if (raw->at_s.si + raw->rise_s.si > out->end_s) {
-    return dea_finding_add(reader->ctx, DEA_ERROR, raw->duration_s.location,
+    return dea_finding_add(raw->ctx, DEA_ERROR, raw->duration_s.location,
                            "duration: the step is over after %g s, but the waveform lasts %g s",
                            raw->at_s.si + raw->rise_s.si, out->end_s);
   }
-  DEA_TRY(reader->ctx, dea_wave_room(reader->ctx, out, 3, 1));
   dea_wave_open(out, 0, 1 / out->end_s, 1);
   dea_wave_add(out, 0, 0, raw->from_V.si);
   dea_wave_add(out, 0, raw->at_s.si, raw->from_V.si);
@@ -98,11 +94,8 @@ static const struct dea_field ramp_fields[] = {
     TIME(hold_s, "hold", "how long the last voltage stays", .default_text = "0 s"),
 };
 
-static dea_status build_ramp(const struct dea_reader *reader, const struct raw *raw,
-                             const char *beside, struct dea_waveform *out)
+static dea_status build_ramp(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)beside;
-  DEA_TRY(reader->ctx, dea_wave_room(reader->ctx, out, 2, 1));
   out->end_s = raw->duration_s.si + raw->hold_s.si;
   dea_wave_open(out, 0, 1 / out->end_s, 1);
   dea_wave_add(out, 0, 0, raw->from_V.si);
@@ -119,11 +112,8 @@ static const struct dea_field triangle_fields[] = {
     CYCLES(cycles, "cycles", "number of cycles", "10"),
 };
 
-static dea_status build_triangle(const struct dea_reader *reader, const struct raw *raw,
-                                 const char *beside, struct dea_waveform *out)
+static dea_status build_triangle(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)beside;
-  DEA_TRY(reader->ctx, dea_wave_room(reader->ctx, out, 3, 1));
   dea_wave_open(out, 0, raw->frequency_Hz.si, (size_t)raw->cycles.si);
   dea_wave_add(out, 0, 0, raw->low_V.si);
   dea_wave_add(out, raw->duty.si, 0, raw->high_V.si);
@@ -133,8 +123,6 @@ static dea_status build_triangle(const struct dea_reader *reader, const struct r
 }
 
 // Pulses -----------------------------------------------------------------------------------------
-
-enum { PULSE_KNOTS = 4 };
 
 /* Adds a block of rectangular pulses up to a voltage: up at the start of each cycle, down after the
  * share `duty` of it, each within the rise time (0: a jump). */
@@ -149,13 +137,13 @@ static void add_pulses(struct dea_waveform *out, double start_s, const struct ra
 }
 
 /* Adds an error at the rise time when both slopes do not fit into a cycle. */
-static dea_status check_rise(const struct dea_reader *reader, const struct raw *raw)
+static dea_status check_rise(const struct raw *raw)
 {
   double capacity = fmin(raw->duty.si, 1 - raw->duty.si) / raw->frequency_Hz.si;
   if (!(raw->rise_s.si > capacity)) {
     return DEA_OK;
   }
-  return dea_finding_add(reader->ctx, DEA_ERROR, raw->rise_s.location,
+  return dea_finding_add(raw->ctx, DEA_ERROR, raw->rise_s.location,
                          "rise_time: %g s is longer than the %g s that the shorter part of a cycle "
                          "lasts",
                          raw->rise_s.si, capacity);
@@ -171,12 +159,9 @@ static const struct dea_field square_fields[] = {
     CYCLES(cycles, "cycles", "number of pulses", "10"),
 };
 
-static dea_status build_square(const struct dea_reader *reader, const struct raw *raw,
-                               const char *beside, struct dea_waveform *out)
+static dea_status build_square(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)beside;
-  DEA_TRY(reader->ctx, check_rise(reader, raw));
-  DEA_TRY(reader->ctx, dea_wave_room(reader->ctx, out, PULSE_KNOTS, 1));
+  DEA_TRY(raw->ctx, check_rise(raw));
   add_pulses(out, 0, raw, raw->high_V.si);
   out->end_s = raw->cycles.si / raw->frequency_Hz.si;
   return DEA_OK;
@@ -204,8 +189,7 @@ static const struct dea_field staircase_fields[] = {
 };
 
 /* Number of voltages; 0 after a finding. */
-static dea_status count_levels(const struct dea_reader *reader, const struct raw *raw,
-                               size_t *count)
+static dea_status count_levels(const struct raw *raw, size_t *count)
 {
   *count = raw->value_count;
   if (*count > 0) {
@@ -216,19 +200,16 @@ static dea_status count_levels(const struct dea_reader *reader, const struct raw
     *count = (size_t)steps + 1;
     return DEA_OK;
   }
-  return dea_finding_add(reader->ctx, DEA_ERROR, raw->step_V.location,
+  return dea_finding_add(raw->ctx, DEA_ERROR, raw->step_V.location,
                          "step: from %g V to %g V in steps of %g V are more than %d voltages",
                          raw->from_V.si, raw->to_V.si, raw->step_V.si, LEVELS_MAX);
 }
 
-static dea_status build_staircase(const struct dea_reader *reader, const struct raw *raw,
-                                  const char *beside, struct dea_waveform *out)
+static dea_status build_staircase(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)beside;
   size_t count;
-  DEA_TRY(reader->ctx, check_rise(reader, raw));
-  DEA_TRY(reader->ctx, count_levels(reader, raw, &count));
-  DEA_TRY(reader->ctx, dea_wave_room(reader->ctx, out, count * PULSE_KNOTS, count));
+  DEA_TRY(raw->ctx, check_rise(raw));
+  DEA_TRY(raw->ctx, count_levels(raw, &count));
   double each_s = raw->cycles.si / raw->frequency_Hz.si + raw->pause_s.si;
   for (size_t i = 0; i < count; i++) {
     double level = raw->value_count > 0 ? raw->values_V[i].si
@@ -295,10 +276,8 @@ static void start_sine(const struct raw *raw, double highest_Hz, struct dea_wave
   out->longest_step_s = 0.05 / highest_Hz;
 }
 
-static dea_status build_sine(const struct dea_reader *reader, const struct raw *raw,
-                             const char *beside, struct dea_waveform *out)
+static dea_status build_sine(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)reader, (void)beside;
   start_sine(raw, raw->frequency_Hz.si, out);
   out->numbers[PHASE] = raw->phase_rad.si / two_pi;
   out->end_s = raw->cycles.si / raw->frequency_Hz.si;
@@ -337,10 +316,8 @@ static const struct dea_field chirp_fields[] = {
                    .default_text = "logarithmic"),
 };
 
-static dea_status build_chirp(const struct dea_reader *reader, const struct raw *raw,
-                              const char *beside, struct dea_waveform *out)
+static dea_status build_chirp(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)reader, (void)beside;
   start_sine(raw, fmax(raw->from_Hz.si, raw->to_Hz.si), out);
   out->numbers[FREQUENCY] = raw->from_Hz.si;
   out->numbers[TO] = raw->to_Hz.si;
@@ -384,21 +361,18 @@ static const struct dea_field burst_fields[] = {
     CYCLES(bursts, "bursts", "number of bursts", "1"),
 };
 
-static dea_status build_burst(const struct dea_reader *reader, const struct raw *raw,
-                              const char *beside, struct dea_waveform *out)
+static dea_status build_burst(const struct raw *raw, struct dea_waveform *out)
 {
-  (void)beside;
   double *p = out->numbers;
   start_sine(raw, raw->frequency_Hz.si, out);
   p[PERIOD] = raw->period_s.si;
   p[BURSTS] = raw->bursts.si;
   if (p[NUMBER] / p[FREQUENCY] > p[PERIOD]) {
-    return dea_finding_add(reader->ctx, DEA_ERROR, raw->period_s.location,
+    return dea_finding_add(raw->ctx, DEA_ERROR, raw->period_s.location,
                            "period: %g s is shorter than a burst, %g s", p[PERIOD],
                            p[NUMBER] / p[FREQUENCY]);
   }
   // Blocks of two knots each burst mark its ends, where the curve bends; the value is below.
-  DEA_TRY(reader->ctx, dea_wave_room(reader->ctx, out, 2, 1));
   dea_wave_open(out, 0, 1 / p[PERIOD], (size_t)p[BURSTS]);
   dea_wave_add(out, 0, 0, p[MEAN] + copysign(p[AMPLITUDE], p[MEAN]));
   dea_wave_add(out, 0, p[NUMBER] / p[FREQUENCY], p[MEAN]);
@@ -469,12 +443,11 @@ static dea_status get_rows(struct dea_context *ctx, const struct dea_csv_columns
                                "a table needs two times at least");
 }
 
-static dea_status build_table(const struct dea_reader *reader, const struct raw *raw,
-                              const char *beside, struct dea_waveform *out)
+static dea_status build_table(const struct raw *raw, struct dea_waveform *out)
 {
-  struct dea_context *ctx = reader->ctx;
+  struct dea_context *ctx = raw->ctx;
   struct dea_csv_columns table;
-  char *path = dea_path_beside(ctx, beside, raw->file.text);
+  char *path = dea_path_beside(ctx, raw->beside, raw->file.text);
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   dea_status status =
       path != NULL ? dea_csv_columns_read(ctx, path, columns, 2, NULL, &table) : DEA_E_MEMORY;
@@ -486,13 +459,10 @@ static dea_status build_table(const struct dea_reader *reader, const struct raw 
                                  dea_context_message(ctx));
   }
   DEA_TRY(ctx, status);
-  status = dea_wave_room(ctx, out, table.rows, 1);
-  if (status == DEA_OK) {
-    dea_wave_open(out, 0, 1, 1);
-    status = get_rows(ctx, &table, out);
-  }
+  dea_wave_open(out, 0, 1, 1);
+  status = get_rows(ctx, &table, out);
   dea_csv_columns_free(ctx, &table);
-  if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) == errors) {
+  if (status == DEA_OK && !out->failed && dea_finding_count(ctx, DEA_ERROR) == errors) {
     double length_s = out->knots[out->knot_count - 1].offset_s;
     out->blocks[0].frequency_Hz = 1 / length_s;
     out->blocks[0].cycles = (size_t)raw->repeat.si;
@@ -525,10 +495,8 @@ KINDS(WAVE_RECORD)
 static const struct kind {
   struct dea_wave_type type;
   const struct dea_record *record; // its keys, "kind" among them
-  /* Makes the waveform of what was read (zeroed but for `type`); beside: the file from whose folder
-   * paths count. What is wrong becomes findings. */
-  dea_status (*build)(const struct dea_reader *reader, const struct raw *raw, const char *beside,
-                      struct dea_waveform *out);
+  /* Makes the waveform of what was read (zeroed but for `type`). What is wrong becomes findings. */
+  dea_status (*build)(const struct raw *raw, struct dea_waveform *out);
 } kinds[] = {
 #define WAVE_KIND(name, meaning, value, extent, cycle)                                             \
   {{#name, value, extent, cycle}, &name##_record, build_##name},
@@ -562,10 +530,13 @@ dea_status dea_waveform_read(const struct dea_reader *reader, const struct dea_n
   if (status == DEA_OK) {
     *waveform =
         (struct dea_waveform){.type = &kinds[index].type, .ctx = ctx, .longest_step_s = INFINITY};
+    raw->ctx = ctx;
+    raw->beside = beside;
     status = dea_schema_read(reader, kinds[index].record, node, path, raw);
   }
   if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) == errors) {
-    status = kinds[index].build(reader, raw, beside, waveform);
+    status = kinds[index].build(raw, waveform);
+    status = waveform->failed ? DEA_E_MEMORY : status;
   }
   dea_free(ctx, raw);
   if (status != DEA_OK || dea_finding_count(ctx, DEA_ERROR) > errors) {

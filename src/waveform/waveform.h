@@ -51,7 +51,8 @@ struct dea_waveform {
   double longest_step_s;   // that still follows a curved one; INFINITY between straight corners
   struct dea_wave_knot *knots;
   struct dea_wave_block *blocks;
-  size_t knot_count, block_count;
+  size_t knot_count, block_count, knot_capacity, block_capacity;
+  bool failed;                          // while it is made: memory was short
   double numbers[DEA_WAVE_NUMBERS_MAX]; // of a curved kind
 };
 

@@ -9,9 +9,10 @@
 
 enum { ROWS_MAX = 200, TRIALS = 1000 };
 
-static const double open_low[DEA_LSQ_PARAMS_MAX] = {-INFINITY, -INFINITY, -INFINITY};
-static const double open_high[DEA_LSQ_PARAMS_MAX] = {INFINITY, INFINITY, INFINITY};
-static const double unit_scale[DEA_LSQ_PARAMS_MAX] = {1, 1, 1};
+static const struct dea_fit_param open_params[] = {
+    {.low = -INFINITY, .high = INFINITY, .scale = 1},
+    {.low = -INFINITY, .high = INFINITY, .scale = 1},
+};
 
 /* Measurements y +- std of a model of p at x, and Gaussian priors on p in the last rows. */
 struct line {
@@ -40,9 +41,7 @@ static struct dea_lsq_problem problem_of(struct line *line, size_t params)
 {
   return (struct dea_lsq_problem){.rows = line->count + line->prior_count,
                                   .params = params,
-                                  .low = open_low,
-                                  .high = open_high,
-                                  .scale = unit_scale,
+                                  .param = open_params,
                                   .residual = residual,
                                   .user = line};
 }
@@ -122,11 +121,10 @@ TEST(test_linear_gaussian_posterior)
   assert_close(s.std[0], sqrt(A[2] / det), 1e-9, 0);
   assert_close(s.std[1], sqrt(A[0] / det), 1e-9, 0);
   assert_close(s.correlation[1], -A[1] / sqrt(A[0] * A[2]), 1e-9, 0);
-  struct dea_lsq_interval interval; // of a Gaussian: one standard deviation either way
-  assert_int_equal(dea_lsq_profile(ctx, &problem, &fit, 1, 1, 1, 0.7 * s.std[1], &interval),
-                   DEA_OK);
-  assert_close(interval.low, fit.p[1] - s.std[1], 1e-6, 0);
-  assert_close(interval.high, fit.p[1] + s.std[1], 1e-6, 0);
+  double interval[2]; // of a Gaussian: one standard deviation either way
+  assert_int_equal(dea_lsq_profile(ctx, &problem, &fit, 1, 1, 0.7 * s.std[1], interval), DEA_OK);
+  assert_close(interval[0], fit.p[1] - s.std[1], 1e-6, 0);
+  assert_close(interval[1], fit.p[1] + s.std[1], 1e-6, 0);
   dea_lsq_statistics_free(&s);
   dea_lsq_free(&fit);
 }
@@ -152,14 +150,15 @@ TEST(test_derivatives)
 TEST(test_bounds)
 {
   struct line line = {.model = straight, .count = 10, .std = 1};
-  const double low[2] = {-1, 2.5}, high[2] = {0.5, 10}, start[2] = {0.4, 2.5};
+  const struct dea_fit_param params[2] = {{.low = -1, .high = 0.5, .scale = 1},
+                                          {.low = 2.5, .high = 10, .scale = 1}};
+  const double start[2] = {0.4, 2.5};
   for (size_t i = 0; i < line.count; i++) {
     line.x[i] = (double)i;
     line.y[i] = 1 + 3 * line.x[i];
   }
   struct dea_lsq_problem problem = problem_of(&line, 2);
-  problem.low = low;
-  problem.high = high;
+  problem.param = params;
   struct dea_lsq_fit fit;
   struct dea_lsq_statistics s;
   assert_int_equal(dea_lsq_solve(ctx, &problem, start, NULL, &fit), DEA_OK);
@@ -205,20 +204,21 @@ TEST(test_profile_that_bends)
 {
   struct line line = {.model = logarithm, .count = 1, .x = {1}, .y = {0.7}, .std = 0.4};
   struct dea_lsq_problem problem = problem_of(&line, 1);
-  const double start = 1, low = 1e-9;
+  const double start = 1;
+  const struct dea_fit_param positive = {.low = 1e-9, .high = INFINITY, .scale = 1},
+                             tight = {.low = 1.8, .high = INFINITY, .scale = 1};
   struct dea_lsq_fit fit;
-  struct dea_lsq_interval interval;
-  problem.low = &low;
+  double interval[2];
+  problem.param = &positive;
   assert_int_equal(dea_lsq_solve(ctx, &problem, &start, NULL, &fit), DEA_OK);
   assert_close(fit.p[0], exp(0.7), 1e-9, 0);
-  assert_int_equal(dea_lsq_profile(ctx, &problem, &fit, 0, 1, 1, 0.8, &interval), DEA_OK);
-  assert_close(interval.low, exp(0.3), 1e-4, 0);
-  assert_close(interval.high, exp(1.1), 1e-4, 0);
-  const double tight = 1.8; // the lower side ends at the bound
-  problem.low = &tight;
-  assert_int_equal(dea_lsq_profile(ctx, &problem, &fit, 0, 1, 1, 0.8, &interval), DEA_OK);
-  assert_true(isinf(interval.low) && interval.low < 0);
-  assert_close(interval.high, exp(1.1), 1e-4, 0);
+  assert_int_equal(dea_lsq_profile(ctx, &problem, &fit, 0, 1, 0.8, interval), DEA_OK);
+  assert_close(interval[0], exp(0.3), 1e-4, 0);
+  assert_close(interval[1], exp(1.1), 1e-4, 0);
+  problem.param = &tight; // the lower side ends at the bound
+  assert_int_equal(dea_lsq_profile(ctx, &problem, &fit, 0, 1, 0.8, interval), DEA_OK);
+  assert_true(isinf(interval[0]) && interval[0] < 0);
+  assert_close(interval[1], exp(1.1), 1e-4, 0);
   dea_lsq_free(&fit);
 }
 

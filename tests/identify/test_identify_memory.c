@@ -17,7 +17,7 @@ static void fit_small(struct dea_context *ctx, void *user)
   static double stretch[2][ROWS], stress[2][ROWS], std[2][ROWS], time_s[ROWS];
   struct dea_fit_series series[2];
   struct dea_arena memory = {.ctx = ctx};
-  struct dea_fit *fit = NULL;
+  struct dea_fit fit = {0};
   const struct dea_fit_options options = {*(const bool *)user};
   file.law_count = options.profile ? 1 : 2;
   snprintf(file.laws[0].text, sizeof file.laws[0].text, "neo-hookean");
@@ -51,7 +51,7 @@ static void fit_small(struct dea_context *ctx, void *user)
     status = dea_fit_run(ctx, &file, series, 2, &options, &fit);
   }
   failing_check(ctx, status);
-  dea_fit_destroy(ctx, fit);
+  dea_fit_free(&fit);
   dea_arena_free(&memory);
 }
 

@@ -26,6 +26,9 @@ static int tear_down(void **state)
   "dea_material: 1\nname: " name "\nkind: plastic\n"                                               \
   "elastic: {young_modulus: " modulus ", poisson_ratio: 0.3, source: test}\n"
 
+/* A set by its name, as a design has it. */
+#define LABEL(word) (&(const struct dea_label){.text = word})
+
 static const struct dea_location nowhere = {"", 0, 0};
 
 /* Calls check for every material of the tree, which read without a finding. */
@@ -99,17 +102,17 @@ static void laws_are_stable(const struct dea_catalogue_entry *entry)
   const struct dea_material_data *data = &entry->data;
   for (size_t i = 0; i < data->law_count; i++) {
     const struct dea_law_set *set = &data->laws[i];
-    const struct dea_material_choice choice = {.law = &set->id};
+    const struct dea_material_choice choice = {.law = &set->head.id};
     struct dea_material material;
     assert_int_equal(dea_material_select(ctx, data, &choice, &material), DEA_OK);
-    const double top = set->range.count == 2 ? set->range.limits[1].si : 1.5;
+    const double top = set->head.range.count == 2 ? set->head.range.limits[1].si : 1.5;
     const double I1_top = top * top + 2 / top;
     for (double l = 1; l <= top * (1 + 1e-9); l += 0.01) {
       bool stable = dea_coupon_is_stable(&material, l, 1 / sqrt(l)) &&
                     dea_coupon_is_stable(&material, l, 1) &&
                     (2 * l * l + pow(l, -4) > I1_top || dea_coupon_is_stable(&material, l, l));
       if (!stable) {
-        fail_msg("%s, %s is not stable at %g", data->name.text, set->id.text, l);
+        fail_msg("%s, %s is not stable at %g", data->name.text, set->head.id.text, l);
       }
     }
   }
@@ -136,7 +139,7 @@ TEST(test_breakdown_with_thickness)
 {
   struct dea_catalogue_entry *entry;
   struct dea_device device = {.electrode_radius_m = 10e-3, .pre_stretch = 4};
-  const struct dea_material_choice huang = {.breakdown = &(struct dea_label){.text = "huang-2012"}};
+  const struct dea_material_choice huang = {.breakdown = LABEL("huang-2012")};
   assert_int_equal(dea_catalogue_read(ctx, "vhb-4910", nowhere, &entry), DEA_OK);
   assert_int_equal(dea_material_select(ctx, &entry->data, &huang, &device.film), DEA_OK);
   device.film_thickness_unstretched_m = 1e-3;
@@ -180,8 +183,7 @@ TEST(test_elastosil_has_the_numbers_of_the_paper)
 {
   struct dea_catalogue_entry *entry;
   struct dea_material film;
-  const struct dea_material_choice first = {0},
-                                   second = {.law = &(struct dea_label){.text = "yeoh-181"}};
+  const struct dea_material_choice first = {0}, second = {.law = LABEL("yeoh-181")};
   assert_int_equal(dea_catalogue_read(ctx, "elastosil-2030", nowhere, &entry), DEA_OK);
   assert_int_equal(dea_material_select(ctx, &entry->data, &first, &film), DEA_OK);
   assert_string_equal(film.law->name, "yeoh");
@@ -276,8 +278,7 @@ TEST(test_temperature)
   struct dea_catalogue_entry *entry;
   struct dea_material film;
   struct dea_quantity at = {.si = 296.15, .origin = DEA_GIVEN};
-  struct dea_material_choice choice = {.temperature = &at,
-                                       .breakdown = &(struct dea_label){.text = "huang-2012"}};
+  struct dea_material_choice choice = {.temperature = &at, .breakdown = LABEL("huang-2012")};
   size_t count;
   assert_int_equal(dea_catalogue_read(ctx, "vhb-4905", nowhere, &entry), DEA_OK);
   assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
@@ -289,7 +290,7 @@ TEST(test_temperature)
   assert_int_equal(findings[0].severity, DEA_NOTE);
   assert_non_null(strstr(findings[0].text, "unknown: breakdown field"));
   at.si = 373.15;
-  choice.law = &(struct dea_label){.text = "cycles-0C"};
+  choice.law = LABEL("cycles-0C");
   assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
   assert_string_equal(film.law_id, "cycles-0C");
   assert_string_equal(film.viscosity_id, "cycles-80C");
@@ -299,7 +300,7 @@ TEST(test_temperature)
   assert_non_null(strstr(findings[1].text, "'cycles-0C' of 'vhb-4905' was measured at 0 degC, not "
                                            "at 100 degC"));
   at.si = 273.15 - 60;
-  choice.law = choice.viscosity = &(struct dea_label){.text = "cycles-shifted"};
+  choice.law = choice.viscosity = LABEL("cycles-shifted");
   assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
   assert_close(film.branches[2].time_s, 7.94 * pow(10, 2.65 * 20 / (64.66 - 20)), 1e-12, 0);
   findings = dea_finding_get(ctx, &count); // of law, permittivity and viscosity

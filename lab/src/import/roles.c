@@ -363,17 +363,17 @@ static dea_status guess_times(struct work *work)
       role->why = odd_unit;
       continue;
     }
-    enum dea_clock_part clock = dea_word_clock(column->name);
+    enum dea_word clock = dea_word_clock(column->name);
     const char *si = dea_title_unit(work->ctx, column->unit, &factor);
-    if (column->count == 1 && clock != DEA_CLOCK_NOTHING) {
-      bool rate = clock == DEA_CLOCK_RATE;
+    if (column->count == 1 && clock != DEA_WORD_NONE) {
+      bool rate = clock == DEA_WORD_RATE;
       bool good = column->unit[0] == '\0' || (si != NULL && strcmp(si, rate ? "Hz" : "s") == 0);
       if (good) {
         role->use = DEA_USE_CLOCK;
         role->factor = column->unit[0] != '\0' ? factor : 1;
-        role->why = rate                          ? "samples a second"
-                    : clock == DEA_CLOCK_INTERVAL ? "time between samples"
-                                                  : "time of the first sample";
+        role->why = rate                         ? "samples a second"
+                    : clock == DEA_WORD_INTERVAL ? "time between samples"
+                                                 : "time of the first sample";
       }
       continue;
     }
@@ -487,9 +487,9 @@ static double lone_clock(const struct work *work, bool start)
     const struct dea_table_column *column = &work->table->columns[k];
     if (work->roles[k].use == DEA_USE_CLOCK) {
       double value = column->values[0] * work->roles[k].factor;
-      enum dea_clock_part part = dea_word_clock(column->name);
-      value = part == DEA_CLOCK_RATE ? 1 / value : value;
-      if ((part == DEA_CLOCK_START) == start && isfinite(value) && (start || value > 0)) {
+      enum dea_word part = dea_word_clock(column->name);
+      value = part == DEA_WORD_RATE ? 1 / value : value;
+      if ((part == DEA_WORD_START) == start && isfinite(value) && (start || value > 0)) {
         return value;
       }
     }
