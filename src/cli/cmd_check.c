@@ -339,7 +339,7 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
   return status == DEA_OK ? dea_study_warn(ctx, design, *device) : status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_design *design = NULL;
@@ -354,12 +354,10 @@ static int run(struct dea_cli *cli, void *user)
     print_json(cli, request, design, device);
   } else if (status == DEA_OK) {
     status = print_text(cli->ctx, design, device, request->all);
-    fflush(stdout);
   }
-  int code = cli_report(cli, status);
   dea_device_destroy(cli->ctx, device);
   dea_design_destroy(cli->ctx, design);
-  return code;
+  return status;
 }
 
 static const struct cli_option options[] = {

@@ -36,19 +36,19 @@ struct side {
 // Command line -----------------------------------------------------------------------------------
 
 /* "5%" or "0.05". */
-static int parse_tolerance(struct dea_cli *cli, const struct dea_command *command,
-                           const struct cli_option *option, const char *text, void *target)
+static dea_status parse_tolerance(struct dea_cli *cli, const struct cli_option *option,
+                                  const char *text, void *target)
 {
   double *tolerance = target;
   (void)option;
   return cli_read_share(text, tolerance) && *tolerance >= 0.0
-             ? 0
-             : cli_usage_error(cli, command, "'%s' is not a tolerance such as 5%%", text);
+             ? DEA_OK
+             : cli_usage_error(cli, "'%s' is not a tolerance such as 5%%", text);
 }
 
 /* "lumped" or "lumped:axisymmetric". */
-static int parse_models(struct dea_cli *cli, const struct dea_command *command,
-                        const struct cli_option *option, const char *text, void *target)
+static dea_status parse_models(struct dea_cli *cli, const struct cli_option *option,
+                               const char *text, void *target)
 {
   struct models *models = target;
   size_t n = strcspn(text, ":");
@@ -57,11 +57,11 @@ static int parse_models(struct dea_cli *cli, const struct dea_command *command,
   (void)option;
   if (models->count == DEA_DESIGN_MODELS_MAX || n == 0 || m == 0 || n >= DEA_NAME_SIZE ||
       m >= DEA_NAME_SIZE || second[m] != '\0') {
-    return cli_usage_error(cli, command, "'%s' names no model", text);
+    return cli_usage_error(cli, "'%s' names no model", text);
   }
   memcpy(models->at[models->count][0], text, n);
   memcpy(models->at[models->count++][1], second, m);
-  return 0;
+  return DEA_OK;
 }
 
 /* Says of which quantities there are, or which of them is near. */
@@ -432,7 +432,7 @@ static dea_status compare(struct dea_context *ctx, const struct request *request
   return judge(ctx, set, request->tolerance);
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_context *ctx = cli->ctx;
@@ -450,13 +450,12 @@ static int run(struct dea_cli *cli, void *user)
     set->pairs = is_pair(request);
     status = compare(ctx, request, sides, set);
   }
-  int code = cli_report(cli, status);
   dea_compare_set_destroy(ctx, set);
   for (size_t i = 0; i <= last; i++) {
     dea_run_destroy(ctx, sides[i].run);
     dea_measured_destroy(ctx, sides[i].measured);
   }
-  return code;
+  return status;
 }
 
 static const struct request defaults = {.tolerance = NAN,

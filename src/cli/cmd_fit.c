@@ -392,7 +392,7 @@ struct request {
 /* fit_KIND: reads a file of a kind, fits (`run`: file into &fit), writes the folder and prints what
  * there is. */
 #define FIT_KIND(kind, form, its_fit, run)                                                         \
-  static int fit_##kind(struct dea_cli *cli, const struct request *request)                        \
+  static dea_status fit_##kind(struct dea_cli *cli, const struct request *request)                 \
   {                                                                                                \
     struct dea_context *ctx = cli->ctx;                                                            \
     const struct dea_fit_folder to = {request->output, request->force, cli->command_line,          \
@@ -411,11 +411,9 @@ struct request {
         printf("\nwritten to %s\n", request->output);                                              \
       }                                                                                            \
     }                                                                                              \
-    fflush(stdout);                                                                                \
-    const int code = cli_report(cli, status);                                                      \
     dea_##its_fit##_destroy(ctx, fit);                                                             \
     dea_fit_head_destroy(ctx, file);                                                               \
-    return code;                                                                                   \
+    return status;                                                                                 \
   }
 FIT_KIND(material, dea_fit_form, fit, dea_fit_file_run(ctx, file, &request->options, &fit))
 FIT_KIND(device, dea_device_form, device_fit,
@@ -426,26 +424,21 @@ FIT_KIND(life, dea_life_form, life_fit, dea_life_fit_run(ctx, file, &fit))
 /* Kinds of fit files other than that of a material, by the key that tells them. */
 static const struct {
   const char *key;
-  int (*fit)(struct dea_cli *cli, const struct request *request);
+  dea_status (*fit)(struct dea_cli *cli, const struct request *request);
 } kinds[] = {{"design", fit_device}, {"breakdown", fit_breakdown}, {"life", fit_life}};
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
-  struct dea_text folder = {.ctx = cli->ctx};
-  request->output = cli_output_name(request->output, request->file, "fit", &folder);
-  dea_status status = request->output == NULL ? DEA_E_MEMORY : DEA_OK;
-  int (*fit)(struct dea_cli *, const struct request *) = NULL;
-  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && fit == NULL && status == DEA_OK; k++) {
-    bool has = false;
-    status = dea_fit_file_has(cli->ctx, request->file, kinds[k].key, &has);
-    fit = has ? kinds[k].fit : NULL;
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->file, "fit", &request->output));
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+    bool has;
+    DEA_TRY(cli->ctx, dea_fit_file_has(cli->ctx, request->file, kinds[k].key, &has));
+    if (has) {
+      return kinds[k].fit(cli, request);
+    }
   }
-  int code = status != DEA_OK ? cli_report(cli, status)
-             : fit != NULL    ? fit(cli, request)
-                              : fit_material(cli, request);
-  dea_text_free(&folder);
-  return code;
+  return fit_material(cli, request);
 }
 
 static const struct request defaults = {.format = {.svg = true, .width_m = 85e-3}};

@@ -252,7 +252,7 @@ static dea_status show_all(struct dea_cli *cli, enum form form, json_t *array)
   return worst;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   json_t *array = request->json ? json_array() : NULL;
@@ -269,8 +269,7 @@ static int run(struct dea_cli *cli, void *user)
   if (request->json) {
     cli_print_json(array);
   }
-  fflush(stdout);
-  return cli_report(cli, status);
+  return status;
 }
 
 static const struct cli_option options[] = {

@@ -90,7 +90,6 @@ static void print_report(const struct dea_case_key *case_key,
     printf(", %zu without all values", report->failed);
   }
   printf("\nwritten to %s\n", folder);
-  fflush(stdout);
 }
 
 static dea_status optimise(struct dea_cli *cli, const struct request *request)
@@ -109,18 +108,13 @@ static dea_status optimise(struct dea_cli *cli, const struct request *request)
   return status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
-  struct dea_text folder = {.ctx = cli->ctx};
   request->options.format = request->format;
   request->options.processes = cli_processes(request->processes);
-  request->options.folder =
-      cli_output_name(request->options.folder, request->file, "optimise", &folder);
-  int code =
-      cli_report(cli, request->options.folder == NULL ? DEA_E_MEMORY : optimise(cli, request));
-  dea_text_free(&folder);
-  return code;
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->file, "optimise", &request->options.folder));
+  return optimise(cli, request);
 }
 
 static const struct request defaults = {.format = {.svg = true, .width_m = 85e-3}};

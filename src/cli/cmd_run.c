@@ -39,25 +39,23 @@ struct run {
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
-  struct dea_text directory;
-  struct dea_text others; // the designs that it is compared with, as a value of the design
   struct dea_job job;
 };
 
-static int parse_model(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target)
+static dea_status parse_model(struct dea_cli *cli, const struct cli_option *option,
+                              const char *text, void *target)
 {
   struct cli_words *models = target;
   if (models->count == DEA_DESIGN_MODELS_MAX) {
-    return cli_usage_error(cli, command, "too many models");
+    return cli_usage_error(cli, "too many models");
   }
   for (size_t i = 0; i < models->count; i++) {
     if (strcmp(models->at[i], text) == 0) {
-      return cli_usage_error(cli, command, "--%s %s is given twice", option->name, text);
+      return cli_usage_error(cli, "--%s %s is given twice", option->name, text);
     }
   }
   models->at[models->count++] = text;
-  return 0;
+  return DEA_OK;
 }
 
 /* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown
@@ -122,10 +120,10 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
   size_t count = request->overrides.count;
   memcpy(overrides, request->overrides.at, sizeof request->overrides.at);
   if (request->designs.count > 1) {
-    run->others.ctx = ctx;
-    add_designs(request->designs.at + 1, request->designs.count - 1, &run->others);
-    overrides[count++] = (struct dea_override){"compute.compare", dea_text_get(&run->others)};
-    DEA_TRY_MEMORY(!run->others.failed);
+    struct dea_text others = {.ctx = ctx};
+    add_designs(request->designs.at + 1, request->designs.count - 1, &others);
+    overrides[count].key = "compute.compare";
+    DEA_TRY(ctx, cli_keep_text(&others, &overrides[count++].value));
   }
   DEA_TRY(ctx, dea_design_read_memory(ctx, request->designs.at[0], bytes, length, overrides, count,
                                       &run->design));
@@ -157,12 +155,6 @@ static dea_status prepare(struct dea_cli *cli, const struct request *request, st
 static void release(struct dea_cli *cli, struct run *run)
 {
   dea_job_end(cli->ctx, &run->job);
-  if (run->directory.ctx != NULL) {
-    dea_text_free(&run->directory);
-  }
-  if (run->others.ctx != NULL) {
-    dea_text_free(&run->others);
-  }
   dea_result_destroy(cli->ctx, run->result);
   dea_device_destroy(cli->ctx, run->device);
   dea_design_destroy(cli->ctx, run->design);
@@ -592,19 +584,18 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
 }
 
 /* The folder of a run; with --keep "out-2", "out-3", ... where "out" exists. */
-static dea_status name_folder(const struct request *request, struct dea_text *out)
+static dea_status name_folder(struct dea_cli *cli, const struct request *request,
+                              const char **folder)
 {
-  struct dea_text made = {.ctx = out->ctx};
-  const char *name = cli_output_name(request->output, request->designs.at[0], "run", &made);
-  dea_text_add(out, "%s", name != NULL ? name : "");
-  const size_t length = out->failed ? 0 : dea_path_length(out->data);
-  for (size_t n = 2; request->keep && !out->failed && dea_path_exists(out->data); n++) {
-    out->length = 0;
-    dea_text_add(out, "%.*s-%zu", (int)length, name, n);
+  const char *name = request->output;
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->designs.at[0], "run", &name));
+  *folder = name;
+  for (size_t n = 2; request->keep && dea_path_exists(*folder); n++) {
+    struct dea_text text = {.ctx = cli->ctx};
+    dea_text_add(&text, "%.*s-%zu", (int)dea_path_length(name), name, n);
+    DEA_TRY(cli->ctx, cli_keep_text(&text, folder));
   }
-  const bool failed = out->failed || name == NULL;
-  dea_text_free(&made);
-  return failed ? DEA_E_MEMORY : DEA_OK;
+  return DEA_OK;
 }
 
 static dea_status run_all(struct dea_cli *cli, const struct request *request, struct run *run)
@@ -613,11 +604,9 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
   bool began, given = request->studies.count > 0; // else those that the design asks for
   char message[1024];
   DEA_TRY(ctx, prepare(cli, request, run));
-  run->directory.ctx = ctx;
   const char *folder = NULL; // the summary goes to stdout alone
   if (request->output != NULL || !request->json) {
-    DEA_TRY(ctx, name_folder(request, &run->directory));
-    folder = dea_text_get(&run->directory);
+    DEA_TRY(ctx, name_folder(cli, request, &folder));
   }
   const bool renewed = folder != NULL && !request->resume && !request->keep &&
                        dea_run_folder_is_of(ctx, folder, run->design);
@@ -637,18 +626,18 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct run run = {0};
   if (request->resume && request->json && request->output == NULL) {
-    return cli_usage_error(cli, &cmd_run, "--resume with --json needs the folder (-o)");
+    return cli_usage_error(cli, "--resume with --json needs the folder (-o)");
   }
   if (request->resume && request->force) {
-    return cli_usage_error(cli, &cmd_run, "--resume goes on, --force starts anew: choose one");
+    return cli_usage_error(cli, "--resume goes on, --force starts anew: choose one");
   }
   if (request->keep && (request->resume || request->force)) {
-    return cli_usage_error(cli, &cmd_run, "--keep takes a new folder, --resume and --force do not");
+    return cli_usage_error(cli, "--keep takes a new folder, --resume and --force do not");
   }
   if (cli->follower) { // no folder; its standard output leads nowhere
     request->json = true;
@@ -657,15 +646,9 @@ static int run(struct dea_cli *cli, void *user)
   if (request->sensitivity && request->studies.count > 0 && request->studies.count < STUDIES_MAX) {
     request->studies.at[request->studies.count++] = sensitivity_name;
   }
-  int code = cli_report(cli, run_all(cli, request, &run));
+  const dea_status status = run_all(cli, request, &run);
   release(cli, &run);
-  return code;
-}
-
-static bool on_ranks(const void *request)
-{
-  (void)request;
-  return true;
+  return status;
 }
 
 static const struct cli_option options[] = {
@@ -697,5 +680,5 @@ static const struct cli_option options[] = {
 const struct dea_command cmd_run = {
     .name = "run",
     .summary = "Solve a design: stretch, field, displacement and margins against voltage",
-    .on_ranks = on_ranks,
+    .on_ranks = true,
     CLI_RUN};

@@ -19,16 +19,16 @@ struct request {
 
 extern char **environ;
 
-static int parse_port(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target)
+static dea_status parse_port(struct dea_cli *cli, const struct cli_option *option, const char *text,
+                             void *target)
 {
   double *port = target;
   char after;
   (void)option;
   return sscanf(text, "%lf%c", port, &after) == 1 && *port >= 0 && *port <= 65535 &&
                  *port == (int)*port
-             ? 0
-             : cli_usage_error(cli, command, "'%s' is no port; one from 1024 to 65535", text);
+             ? DEA_OK
+             : cli_usage_error(cli, "'%s' is no port; one from 1024 to 65535", text);
 }
 
 static void open_browser(const char *page)
@@ -95,7 +95,7 @@ static size_t choose(const struct cli_data_list *list, struct dea_studio_example
   return count;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
@@ -120,15 +120,14 @@ static int run(struct dea_cli *cli, void *user)
   if (status == DEA_OK && examples != NULL && !folder.failed) {
     options.example_count = choose(&list, examples);
     options.examples = examples;
-    cli_watch(cli);
     setenv("NO_COLOR", "1", 1); // what runs say is shown in the page
     status = serve(cli, request, &options);
   }
-  const int code = cli_report(cli, folder.failed || examples == NULL ? DEA_E_MEMORY : status);
+  status = folder.failed || examples == NULL ? DEA_E_MEMORY : status;
   dea_free(cli->ctx, examples);
   cli_data_free(cli->ctx, &list);
   dea_text_free(&folder);
-  return code;
+  return status;
 }
 
 static const struct cli_option options[] = {
@@ -146,7 +145,4 @@ const struct dea_command cmd_studio = {
     .about = "Serves the page on this computer only (127.0.0.1), to who has the address that is "
              "printed, until Ctrl-C. All that it makes are files in the folder, and runs go on as "
              "long as it does; it has no way to the bench.",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};
