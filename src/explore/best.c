@@ -21,6 +21,7 @@ struct work {
   struct dea_store *store;
   struct dea_evaluator evaluator;
   struct dea_search search;
+  struct dea_limit sides[2 * DEA_EXPLORE_LIMITS_MAX]; // of limits, each with one only
   struct dea_arena memory;
   double *scatter; // [scattered][params]; NULL: none
 };
@@ -40,31 +41,14 @@ static double sign_of(const struct dea_case_key *case_key, size_t k)
 
 static double objective(const void *user, size_t k, const double *q)
 {
-  const struct dea_case_key *case_key = user;
+  const struct dea_case_key *case_key = ((const struct work *)user)->case_key;
   return sign_of(case_key, k) * last_value(case_key, case_key->objectives[k], q);
-}
-
-/* Sides of limits, counted: the limit of that number with one side only. */
-static bool side_of(const struct dea_case_key *case_key, size_t side, struct dea_limit *out)
-{
-  for (size_t l = 0; l < case_key->limit_count; l++) {
-    const struct dea_limit *limit = &case_key->limits[l];
-    if (!isnan(limit->above) && side-- == 0) {
-      *out = (struct dea_limit){limit->column, limit->above, NAN};
-      return true;
-    }
-    if (!isnan(limit->below) && side-- == 0) {
-      *out = (struct dea_limit){limit->column, NAN, limit->below};
-      return true;
-    }
-  }
-  return false;
 }
 
 static double margin(const void *user, size_t side, const double *q)
 {
-  struct dea_limit limit;
-  return side_of(user, side, &limit) ? dea_limit_margin(user, &limit, q) : NAN;
+  const struct work *w = user;
+  return dea_limit_margin(w->case_key, &w->sides[side], q);
 }
 
 /* Shifts of scattered designs, the first of them none. */
@@ -115,7 +99,6 @@ static void fill_search(struct work *w)
   const struct dea_case_key *case_key = w->case_key;
   const struct dea_explore_file *file = case_key->file;
   const struct dea_explore_robust *robust = &file->robust;
-  struct dea_limit limit;
   struct dea_search *search = &w->search;
   *search = (struct dea_search){
       .ctx = w->ctx,
@@ -124,7 +107,7 @@ static void fill_search(struct work *w)
       .processes = w->options->processes,
       .objective = objective,
       .margin = margin,
-      .user = case_key,
+      .user = w,
       .objective_count = file->objective_count,
       .method = (enum dea_method)file->method.value,
       .starts = (size_t)file->starts.si,
@@ -136,8 +119,14 @@ static void fill_search(struct work *w)
       .quantile = robust->quantile.origin != DEA_ABSENT ? robust->quantile.si : NAN,
       .spread = robust->spread.si,
       .replaced = w->report->replaced};
-  while (side_of(case_key, search->limit_count, &limit)) {
-    search->limit_count++;
+  for (size_t l = 0; l < case_key->limit_count; l++) {
+    const struct dea_limit *limit = &case_key->limits[l];
+    if (!isnan(limit->above)) {
+      w->sides[search->limit_count++] = (struct dea_limit){limit->column, limit->above, NAN};
+    }
+    if (!isnan(limit->below)) {
+      w->sides[search->limit_count++] = (struct dea_limit){limit->column, NAN, limit->below};
+    }
   }
   for (size_t j = 0; j < case_key->variable_count; j++) {
     const struct dea_variable *variable = &case_key->variables[j];
@@ -219,15 +208,15 @@ static dea_status check(const struct work *w)
 /* All evaluations in their order, as a plan. */
 static dea_status write_cases(struct work *w)
 {
-  const size_t n = w->case_key->variable_count, count = dea_store_count(w->store);
-  struct dea_plan plan = {.p = dea_arena_alloc(&w->memory, n * count, sizeof(double)),
+  const size_t count = dea_store_count(w->store);
+  struct dea_plan plan = {.cases = dea_arena_alloc(&w->memory, count, sizeof(struct dea_case *)),
                           .count = count,
                           .samples = count};
-  DEA_TRY_MEMORY(plan.p != NULL);
+  DEA_TRY_MEMORY(plan.cases != NULL);
   for (size_t i = 0; i < count; i++) {
-    memcpy(plan.p + i * n, dea_store_get(w->store, i)->p, n * sizeof(double));
+    plan.cases[i] = dea_store_get(w->store, i);
   }
-  return dea_sweep_write(w->case_key, &plan, w->store, &w->options->format, w->options->folder);
+  return dea_sweep_write(w->case_key, &plan, &w->options->format, w->options->folder);
 }
 
 /* A variable this near to a bound, as a share of its range, is at it. */

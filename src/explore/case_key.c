@@ -121,20 +121,17 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
       io->marks[k] |= dea_load_point_flags(&case_key->points[case_key->model.groups[g].first + k]);
     }
     for (size_t i = 0; i < count; i++) {
-      const struct dea_load_point *point =
-          &case_key
-               ->points[case_key->model.groups[dea_case_key_is_held(case_key, i) ? 1 : 0].first +
-                        k];
+      const struct dea_explored *of = &case_key->quantities[i];
+      const size_t group = dea_case_key_is_held(case_key, i) ? 1 : 0;
       double *q = &io->q[k * count + i];
-      *q = !case_key->quantities[i].is_critical && !case_key->quantities[i].is_seen &&
-                   !case_key->quantities[i].is_frequency
-               ? dea_point_get(point, case_key->quantities[i].column)
+      *q = of->source == DEA_EXPLORED_POINT
+               ? dea_point_get(&case_key->points[case_key->model.groups[group].first + k],
+                               of->column)
                : case_key->seen[k][i];
-      if (isnan(*q) && io->why[0] == '\0' && case_key->quantities[i].is_critical) {
-        snprintf(io->why, sizeof io->why, "%s: %.120s", case_key->quantities[i].key, case_key->why);
+      if (isnan(*q) && io->why[0] == '\0' && of->source == DEA_EXPLORED_CRITICAL) {
+        snprintf(io->why, sizeof io->why, "%s: %.120s", of->key, case_key->why);
       } else if (isnan(*q) && io->why[0] == '\0') {
-        snprintf(io->why, sizeof io->why, "the model does not support %s of this design",
-                 case_key->quantities[i].key);
+        snprintf(io->why, sizeof io->why, "the model does not support %s of this design", of->key);
       }
     }
   }
@@ -158,7 +155,7 @@ static dea_status find_critical(struct dea_case_key *case_key,
                                              .kind = quantity->event,
                                              .first_V = highest_V / 4,
                                              .highest_V = 4 * highest_V};
-    if (!quantity->is_critical) {
+    if (quantity->source != DEA_EXPLORED_CRITICAL) {
       continue;
     }
     DEA_TRY(ctx, dea_critical_find(ctx, &ask, &case_key->critical[i]));
@@ -200,9 +197,9 @@ static dea_status stand(void *user, struct dea_model *model, const struct dea_de
   dea_status status = dea_monitor_set_read(ctx, &set, case_key->model.type, model, false, &seen);
   for (size_t i = 0; i < case_key->quantity_count && stop < case_key->voltage_count; i++) {
     const struct dea_explored *quantity = &case_key->quantities[i];
-    if (quantity->is_seen) {
+    if (quantity->source == DEA_EXPLORED_MONITOR) {
       case_key->seen[stop][i] = dea_point_get(&seen, quantity->column);
-    } else if (quantity->is_frequency && status == DEA_OK) {
+    } else if (quantity->source == DEA_EXPLORED_FREQUENCY && status == DEA_OK) {
       status = find_frequency(case_key, model, stop, &case_key->seen[stop][i]);
     }
   }
@@ -211,8 +208,8 @@ static dea_status stand(void *user, struct dea_model *model, const struct dea_de
   const struct dea_model_settings settings = dea_model_settings_of(design);
   status = stop + 1 == case_key->voltage_count ? find_critical(case_key, &settings, design, device)
                                                : DEA_OK;
-  if (status == DEA_OK && case_key->stood != NULL) {
-    status = case_key->stood(case_key, model, device, stop);
+  if (status == DEA_OK && case_key->now != NULL) {
+    status = dea_case_key_add_slopes(case_key, model, device, stop);
   }
   for (size_t i = 0; i < case_key->quantity_count; i++) {
     dea_critical_end(ctx, &case_key->critical[i]);
@@ -349,7 +346,7 @@ static bool is_critical(struct dea_explored *out)
   for (int i = 0; i < DEA_CRITICAL_KINDS; i++) {
     const struct dea_critical_kind *critical = &dea_critical_kinds[i];
     if (strcmp(out->key, critical->key) == 0) {
-      out->is_critical = true;
+      out->source = DEA_EXPLORED_CRITICAL;
       out->event = critical->kind;
       out->shown =
           (struct dea_column){out->key, "V", "kV", 1e-3, critical->title, critical->meaning};
@@ -365,6 +362,7 @@ static bool is_critical(struct dea_explored *out)
 static dea_status find_quantity(struct dea_context *ctx, const struct dea_device *device,
                                 const struct dea_label *label, struct dea_explored *out, bool *good)
 {
+  bool observed = false;
   *good = false;
   *out = (struct dea_explored){.column = -1};
   if (strlen(label->text) >= sizeof out->key) {
@@ -376,19 +374,21 @@ static dea_status find_quantity(struct dea_context *ctx, const struct dea_device
     return DEA_OK;
   }
   if (dea_device_is_observed(device)) { // adds its columns to those that are looked through
-    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, -1, &out->of, &out->is_seen));
+    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, -1, &out->of, &observed));
   }
   out->column = dea_column_find(ctx, label->text);
   if (out->column >= 0 && dea_device_is_observed(device)) {
-    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, out->column, &out->of, &out->is_seen));
-    out->is_seen = out->is_seen && out->of.source != DEA_OF_MONITOR_ERROR;
+    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, out->column, &out->of, &observed));
+    observed = observed && out->of.source != DEA_OF_MONITOR_ERROR;
   }
-  if (out->column < 0 || (out->column >= DEA_LOAD_POINT_COLUMNS && !out->is_seen)) {
+  if (out->column < 0 || (out->column >= DEA_LOAD_POINT_COLUMNS && !observed)) {
     return refuse(ctx, device, label);
   }
   out->shown = *dea_column_at(ctx, out->column);
   out->shown.key = out->key; // as the file has it
-  out->is_frequency = out->column == dea_point_column_find("frequency_Hz");
+  out->source = observed                                               ? DEA_EXPLORED_MONITOR
+                : out->column == dea_point_column_find("frequency_Hz") ? DEA_EXPLORED_FREQUENCY
+                                                                       : DEA_EXPLORED_POINT;
   *good = true;
   return DEA_OK;
 }
@@ -405,7 +405,7 @@ static dea_status read_quantities(struct dea_case_key *case_key)
     if (twice) {
       DEA_TRY(case_key->ctx, dea_finding_add(case_key->ctx, DEA_ERROR, file->quantities[i].location,
                                              "%s is there twice", out->key));
-    } else if (good && out->is_seen && case_key->model.type != NULL &&
+    } else if (good && out->source == DEA_EXPLORED_MONITOR && case_key->model.type != NULL &&
                case_key->model.type->observe == NULL) {
       DEA_TRY(case_key->ctx,
               dea_finding_add(case_key->ctx, DEA_ERROR, file->quantities[i].location,
@@ -575,14 +575,24 @@ static dea_status read_variables(struct dea_case_key *case_key)
   return DEA_OK;
 }
 
+/* Number of a quantity of the file by its key; after a finding -1. */
+static dea_status find_column(const struct dea_case_key *case_key, const struct dea_label *label,
+                              int *out)
+{
+  *out = dea_case_key_quantity(case_key, label->text);
+  return *out >= 0 ? DEA_OK
+                   : dea_finding_add(case_key->ctx, DEA_ERROR, label->location,
+                                     "'%.60s' is none of the quantities of this file", label->text);
+}
+
 static dea_status read_limit(struct dea_case_key *case_key, const struct dea_explore_limit *text)
 {
   struct dea_limit *limit = &case_key->limits[case_key->limit_count++];
   struct dea_context *ctx = case_key->ctx;
-  *limit = (struct dea_limit){dea_case_key_quantity(case_key, text->quantity.text), NAN, NAN};
+  *limit = (struct dea_limit){-1, NAN, NAN};
+  DEA_TRY(ctx, find_column(case_key, &text->quantity, &limit->column));
   if (limit->column < 0) {
-    return dea_finding_add(ctx, DEA_ERROR, text->quantity.location,
-                           "'%.60s' is none of the quantities of this file", text->quantity.text);
+    return DEA_OK;
   }
   const struct dea_column *column = &case_key->quantities[limit->column].shown;
   struct dea_device_param number = {.state = "", .param = {.unit = column->si_unit}};
@@ -604,21 +614,6 @@ static dea_status read_limit(struct dea_case_key *case_key, const struct dea_exp
                                "a limit needs above or below");
 }
 
-static dea_status read_objectives(struct dea_case_key *case_key)
-{
-  const struct dea_explore_file *file = case_key->file;
-  for (size_t k = 0; k < file->objective_count; k++) {
-    const struct dea_label *label = &file->objectives[k].quantity;
-    case_key->objectives[k] = dea_case_key_quantity(case_key, label->text);
-    if (case_key->objectives[k] < 0) {
-      DEA_TRY(case_key->ctx,
-              dea_finding_add(case_key->ctx, DEA_ERROR, label->location,
-                              "'%.60s' is none of the quantities of this file", label->text));
-    }
-  }
-  return DEA_OK;
-}
-
 static dea_status resolve_file(struct dea_case_key *case_key)
 {
   struct dea_context *ctx = case_key->ctx;
@@ -632,7 +627,10 @@ static dea_status resolve_file(struct dea_case_key *case_key)
   for (size_t i = 0; i < case_key->file->limit_count; i++) {
     DEA_TRY(ctx, read_limit(case_key, &case_key->file->limits[i]));
   }
-  DEA_TRY(ctx, read_objectives(case_key));
+  for (size_t k = 0; k < case_key->file->objective_count; k++) {
+    DEA_TRY(ctx, find_column(case_key, &case_key->file->objectives[k].quantity,
+                             &case_key->objectives[k]));
+  }
   read_voltages(case_key);
   const size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {

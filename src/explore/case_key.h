@@ -8,16 +8,18 @@
 #include "job/device_evaluation.h"
 #include "study/critical.h"
 
-/* What is kept of a design: a column of load points, what a monitor of a device made of plies
- * shows, or a voltage at which the film comes to an end. */
+/* What is kept of a design. */
 struct dea_explored {
   struct dea_column shown; // its key is the text below
   char key[80];            // as the file has it: "centre_z_m", "plate_turn_y_rad"
   int column;              // of the context; -1: a voltage of an event
-  bool is_frequency;       // that of the lowest mode, which solving leaves out
-  bool is_critical;        // a voltage of the event below
+  enum dea_explored_source {
+    DEA_EXPLORED_POINT,     // a column of load points
+    DEA_EXPLORED_MONITOR,   // what a monitor or channel of a device made of plies shows: `of`
+    DEA_EXPLORED_FREQUENCY, // of the lowest mode, which solving leaves out
+    DEA_EXPLORED_CRITICAL,  // the voltage of `event`, at which the film comes to an end
+  } source;
   enum dea_event_kind event;
-  bool is_seen; // of a monitor or channel: that below
   struct dea_monitor_column of;
 };
 
@@ -68,10 +70,7 @@ struct dea_case_key {
   char why[DEA_CRITICAL_WHY_SIZE]; // of the last one that there is not
   struct dea_arena memory;
   char id[DEA_CASE_ID_SIZE];
-  struct dea_case *now; // what is evaluated, while slopes are taken too
-  /* Told of each stop of these, as of struct dea_device_model; NULL: nobody. */
-  dea_status (*stood)(struct dea_case_key *case_key, struct dea_model *model,
-                      const struct dea_device *device, size_t stop);
+  struct dea_case *now; // what is evaluated, where slopes are wanted too
 };
 
 /* Reads a file and resolves it. All that is wrong becomes findings, at its place, before anything
@@ -103,3 +102,6 @@ dea_status dea_from_fit_read(struct dea_context *ctx, const struct dea_design *d
  * at a design. The evaluator without gradients where the model has none of its own, or the file's
  * method wants none. user: lent by the question. */
 struct dea_evaluator dea_case_key_with_slopes(const struct dea_case_key *case_key);
+/* Adds these slopes to the case that is evaluated, of a model that stands at a stop. */
+dea_status dea_case_key_add_slopes(const struct dea_case_key *case_key, struct dea_model *model,
+                                   const struct dea_device *device, size_t stop);

@@ -140,7 +140,7 @@ struct work {
   const struct dea_case_key *case_key;
   const struct dea_sweep_options *options;
   struct dea_sweep_report *report;
-  const struct dea_plan *plan;
+  struct dea_plan plan;
   struct dea_arena memory;
   struct dea_order order;
   struct dea_store *store;
@@ -151,7 +151,7 @@ struct work {
 
 static const double *numbers(const struct work *w, size_t i)
 {
-  return w->plan->p + i * w->case_key->variable_count;
+  return w->plan.p + i * w->case_key->variable_count;
 }
 
 /* Whether a place of the order is of this shard: blocks of it go round. */
@@ -189,12 +189,12 @@ static bool move_on(struct work *w, struct stretch *own)
     if (own->next < own->end) {
       return true;
     }
-    while (w->next < w->plan->count && !is_open(w, w->next)) {
+    while (w->next < w->plan.count && !is_open(w, w->next)) {
       w->next++;
     }
-    if (w->next < w->plan->count) {
+    if (w->next < w->plan.count) {
       *own = (struct stretch){w->next, w->next + 1};
-      while (own->end < w->plan->count &&
+      while (own->end < w->plan.count &&
              w->order.first[own->end] == w->order.first[own->next]) { // the group
         own->end++;
       }
@@ -241,7 +241,7 @@ static dea_status keep(void *user, const struct dea_case *done)
 static dea_status evaluate_all(struct work *w)
 {
   struct dea_pool *pool;
-  for (size_t i = 0; i < w->plan->count; i++) {
+  for (size_t i = 0; i < w->plan.count; i++) {
     if (is_mine(w, i)) {
       w->report->of_shard++;
       w->report->before += is_open(w, i) ? 0U : 1U;
@@ -266,9 +266,9 @@ static dea_status evaluate(struct work *w)
       case_key->model.type->load != NULL && case_key->file->begin.value == DEA_BEGIN_NEAREST;
   // of the plan alone: the same whatever is done, and however many processes do it
   DEA_TRY(case_key->ctx,
-          dea_order_of(&w->memory, w->plan->p, w->plan->count, case_key->variable_count, whole,
+          dea_order_of(&w->memory, w->plan.p, w->plan.count, case_key->variable_count, whole,
                        warms ? GROUP : 1, &w->order));
-  w->block = w->plan->count / (SHARES * w->options->shard.parts);
+  w->block = w->plan.count / (SHARES * w->options->shard.parts);
   w->block = w->block < 1 ? 1 : w->block > w->order.group ? w->order.group : w->block;
   w->stretches = dea_arena_alloc(&w->memory, w->options->processes, sizeof *w->stretches);
   return w->stretches != NULL ? evaluate_all(w) : DEA_E_MEMORY;
@@ -292,19 +292,20 @@ static void count_flags(const struct dea_case_key *case_key, const struct dea_ca
   }
 }
 
-/* How much of the plan is there, and why some of it failed. */
-static void count(struct work *w)
+/* Finds what of the plan is there, and why some of it failed. */
+static void collect(struct work *w)
 {
   struct dea_sweep_report *report = w->report;
   const struct dea_case *reason = NULL;
   size_t votes = 0; // Boyer and Moore's: a reason of more than half is left
-  for (size_t i = 0; i < w->plan->count; i++) {
-    const struct dea_case *done = dea_store_find(w->store, numbers(w, i));
-    report->there += done != NULL ? 1U : 0U;
-    if (done != NULL) {
-      count_flags(w->case_key, done, report);
+  for (size_t i = 0; i < w->plan.count; i++) {
+    const struct dea_case *done = w->plan.cases[i] = dea_store_find(w->store, numbers(w, i));
+    if (done == NULL) {
+      continue;
     }
-    if (done == NULL || done->why[0] == '\0') {
+    report->there++;
+    count_flags(w->case_key, done, report);
+    if (done->why[0] == '\0') {
       continue;
     }
     report->failed++;
@@ -312,7 +313,7 @@ static void count(struct work *w)
     votes = strncmp(done->why, reason->why, 40) == 0 ? votes + 1 : votes - 1;
   }
   snprintf(report->why, sizeof report->why, "%s", reason != NULL ? reason->why : "");
-  report->planned = w->plan->count;
+  report->planned = w->plan.count;
   report->torn = dea_store_torn(w->store);
 }
 
@@ -326,14 +327,13 @@ static dea_status run(struct work *w)
   dea_status status = options->merge ? DEA_OK : evaluate(w);
   char message[512];
   snprintf(message, sizeof message, "%.511s", dea_context_message(ctx));
-  count(w);
+  collect(w);
   if (status != DEA_E_MEMORY && (options->merge || options->shard.parts == 1)) {
-    DEA_TRY(ctx,
-            dea_sweep_write(w->case_key, w->plan, w->store, &options->format, options->folder));
+    DEA_TRY(ctx, dea_sweep_write(w->case_key, &w->plan, &options->format, options->folder));
     w->report->written = true;
-    DEA_TRY(ctx, w->plan->nodes == NULL && options->at_count == 0
+    DEA_TRY(ctx, w->plan.nodes == NULL && options->at_count == 0
                      ? DEA_OK
-                     : dea_sweep_emulate(w->case_key, w->plan, w->store, options, &w->report->at));
+                     : dea_sweep_emulate(w->case_key, &w->plan, options, &w->report->at));
   }
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
@@ -341,14 +341,10 @@ static dea_status run(struct work *w)
 dea_status dea_sweep_run(const struct dea_case_key *case_key,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report)
 {
-  struct dea_plan plan;
-  struct work w = {.case_key = case_key,
-                   .options = options,
-                   .report = report,
-                   .plan = &plan,
-                   .memory = {.ctx = case_key->ctx}};
+  struct work w = {
+      .case_key = case_key, .options = options, .report = report, .memory = {.ctx = case_key->ctx}};
   *report = (struct dea_sweep_report){0};
-  dea_status status = dea_plan_build(&w.memory, case_key, &plan);
+  dea_status status = dea_plan_build(&w.memory, case_key, &w.plan);
   status = status == DEA_OK ? run(&w) : status;
   dea_store_close(w.store);
   dea_arena_free(&w.memory);

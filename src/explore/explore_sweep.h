@@ -38,13 +38,11 @@ dea_status dea_sweep_run(const struct dea_case_key *case_key,
 
 /* Of a sparse grid that is done: emulator.json into a folder, and the CSV of options.at. */
 dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                             const struct dea_store *store, const struct dea_sweep_options *options,
-                             char **at);
+                             const struct dea_sweep_options *options, char **at);
 /* The tables of a plan's cases as far as they are done, and figures of the format, into a folder.
  */
 dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                           const struct dea_store *store, const struct dea_plot_format *format,
-                           const char *folder);
+                           const struct dea_plot_format *format, const char *folder);
 
 /* In which order cases are evaluated: neighbours after each other, in groups that begin from the
  * solution of one of them. */

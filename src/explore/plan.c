@@ -312,7 +312,9 @@ dea_status dea_plan_build(struct dea_arena *memory, const struct dea_case_key *c
   const int kind = case_key->file->plan.value;
   *out = (struct dea_plan){0};
   DEA_TRY(case_key->ctx, dea_plan_check(case_key));
-  return kind == DEA_PLAN_GRID     ? build_grid(memory, case_key, out)
-         : kind == DEA_PLAN_SPARSE ? build_sparse(memory, case_key, out)
-                                   : build_samples(memory, case_key, out);
+  DEA_TRY(case_key->ctx, kind == DEA_PLAN_GRID     ? build_grid(memory, case_key, out)
+                         : kind == DEA_PLAN_SPARSE ? build_sparse(memory, case_key, out)
+                                                   : build_samples(memory, case_key, out));
+  out->cases = dea_arena_alloc(memory, out->count, sizeof(struct dea_case *));
+  return dea_arena_status(memory);
 }

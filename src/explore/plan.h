@@ -18,10 +18,11 @@ double dea_normal_quantile(double u);
  * numbers behind them; without any they stay. */
 void dea_sample_correlate(const struct dea_explore_file *file, size_t count, double *u);
 
-/* Cases [count][params], in memory of an arena. Of indices: A, B, then for each variable A with the
- * variable of B, of `samples` each. */
+/* Numbers of cases [count][params], in memory of an arena. Of indices: A, B, then for each variable
+ * A with the variable of B, of `samples` each. */
 struct dea_plan {
   double *p;
+  const struct dea_case **cases; // [count] as far as they are done, else NULL; who does them fills
   size_t count, samples;
   unsigned char *nodes; // of a sparse grid (io/sparse_grid.h)
 };

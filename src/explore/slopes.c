@@ -47,8 +47,9 @@ static struct wanted find_wanted(const struct dea_case_key *case_key, bool held)
     for (size_t i = 0; i < case_key->quantity_count; i++) {
       const struct dea_explored *quantity = &case_key->quantities[i];
       if (!is_wanted(case_key, i) || dea_case_key_is_held(case_key, i) != held ||
-          quantity->is_critical || quantity->is_seen != (of_monitors == 1) ||
-          (quantity->is_seen && quantity->of.source != DEA_OF_MONITOR)) {
+          quantity->source == DEA_EXPLORED_CRITICAL ||
+          (quantity->source == DEA_EXPLORED_MONITOR) != (of_monitors == 1) ||
+          (of_monitors == 1 && quantity->of.source != DEA_OF_MONITOR)) {
         continue;
       }
       out.quantity[out.column_count + out.monitor_count] = i;
@@ -157,7 +158,7 @@ static dea_status find_critical(struct dea_context *ctx, const struct dea_case_k
 {
   double slopes[DEA_CASE_PARAMS_MAX];
   for (size_t i = 0; i < case_key->quantity_count; i++) {
-    if (!case_key->quantities[i].is_critical || !is_wanted(case_key, i)) {
+    if (case_key->quantities[i].source != DEA_EXPLORED_CRITICAL || !is_wanted(case_key, i)) {
       continue;
     }
     const dea_status status =
@@ -176,8 +177,8 @@ static dea_status find_critical(struct dea_context *ctx, const struct dea_case_k
   return DEA_OK;
 }
 
-static dea_status add_stop(struct dea_case_key *case_key, struct dea_model *model,
-                           const struct dea_device *device, size_t stop)
+dea_status dea_case_key_add_slopes(const struct dea_case_key *case_key, struct dea_model *model,
+                                   const struct dea_device *device, size_t stop)
 {
   struct dea_context *ctx = case_key->model.ctx;
   const size_t last = case_key->voltage_count - 1;
@@ -208,9 +209,7 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
 {
   struct dea_case_key *case_key = user;
   case_key->now = io;
-  case_key->stood = add_stop;
   const dea_status status = case_key->evaluator.evaluate(case_key, ctx, io);
-  case_key->stood = NULL;
   case_key->now = NULL;
   return status;
 }

@@ -16,8 +16,7 @@ struct work {
 };
 
 /* Whether all cases of the plan are done; they are then in *w. */
-static dea_status gather(struct work *w, const struct dea_plan *plan, const struct dea_store *store,
-                         bool *whole)
+static dea_status gather(struct work *w, const struct dea_plan *plan, bool *whole)
 {
   const struct dea_case_key *key = w->case_key;
   const size_t keys = key->variable_count, volts = key->voltage_count,
@@ -39,7 +38,7 @@ static dea_status gather(struct work *w, const struct dea_plan *plan, const stru
   }
   *whole = true;
   for (size_t c = 0; c < plan->count && *whole; c++) {
-    const struct dea_case *done = dea_store_find(store, plan->p + c * keys);
+    const struct dea_case *done = plan->cases[c];
     *whole = done != NULL;
     if (done != NULL) {
       memcpy(values + c * each, done->q, each * sizeof *values);
@@ -153,8 +152,7 @@ static dea_status emulate(struct work *w, const struct dea_sweep_options *option
 }
 
 dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                             const struct dea_store *store, const struct dea_sweep_options *options,
-                             char **at)
+                             const struct dea_sweep_options *options, char **at)
 {
   struct dea_context *ctx = case_key->ctx;
   struct work w = {.case_key = case_key, .memory = {.ctx = ctx}};
@@ -163,7 +161,7 @@ dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct d
     return dea_fail(ctx, DEA_E_DESIGN, "--at is of the plan sparse-grid");
   }
   void *before = dea_c_locale_enter();
-  dea_status status = gather(&w, plan, store, &whole);
+  dea_status status = gather(&w, plan, &whole);
   if (status == DEA_OK && whole) {
     status = dea_emulator_build(ctx, &w.emulator);
     status = status == DEA_OK ? emulate(&w, options, at) : status;

@@ -33,10 +33,11 @@ void dea_studio_jobs_destroy(struct dea_context *ctx, struct dea_studio_jobs *jo
 
 // From any thread:
 
-/* Puts one at the end of the queue; subject: the file that it is about, output: what it writes. Its
- * number, from 1; 0: too many wait, or another one writes there. */
-int dea_studio_jobs_add(struct dea_studio_jobs *jobs, const char *action, const char *subject,
-                        const char *output, const struct dea_studio_line *line);
+/* Puts one at the end of the queue. facts: {action, subject, output, command}, with the file that
+ * it is about and what it writes; taken. Its number, from 1; 0: too many wait, or another one
+ * writes there. */
+int dea_studio_jobs_add(struct dea_studio_jobs *jobs, json_t *facts,
+                        const struct dea_studio_line *line);
 /* Interrupts it, the second time ends it at once; takes one that waits out of the queue. */
 bool dea_studio_jobs_stop(struct dea_studio_jobs *jobs, int id);
 /* [{id, action, subject, output, command, state, code, progress, said}], the oldest first; state:
