@@ -101,12 +101,15 @@ enum cli_kind {
 };
 
 struct cli_kind_info {
-  const char *name; // for "dea completion names NAME"; NULL: files
-  bool folder;      // folders only
-  bool few;         // help lists them too
-  dea_status (*list)(struct dea_cli *cli, struct dea_text *out); // a line each; NULL: nothing
+  const char *name;  // for "dea completion names NAME"; NULL: files
+  bool folder;       // folders only
+  bool few;          // help lists them too
+  const char *words; // a line each; NULL: what `list` adds, or nothing
+  dea_status (*list)(struct dea_cli *cli, struct dea_text *out);
 };
 extern const struct cli_kind_info cli_kinds[CLI_KINDS];
+dea_status cli_kind_list(struct dea_cli *cli, const struct cli_kind_info *kind,
+                         struct dea_text *out);
 
 /* A row of a command's table: an option, or without a name the argument (one row at most). */
 struct cli_option {
@@ -265,7 +268,7 @@ void cli_voltage_is_on(void);
 
 struct cli_data_file {
   char *path; // to open
-  char *name; // inside the folder of examples, with "/" between: "paper/fig02.yaml"
+  char *name; // its end inside the folder of examples, with "/" between: "paper/fig02.yaml"
 };
 
 /* In the order of their names; those of one level of folders come after the others. */

@@ -318,9 +318,7 @@ static dea_status write_drawing(struct dea_cli *cli, const char *file,
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a design without errors has its device
   const struct dea_device_drawing drawing = {.layout = device->layout};
   dea_status status = dea_device_drawing_add_svg(&drawing, 1, &out);
-  if (status == DEA_OK) {
-    status = dea_file_write(cli->ctx, file, dea_text_get(&out), out.length);
-  }
+  status = status == DEA_OK ? dea_text_write_path(cli->ctx, &out, file) : status;
   dea_text_free(&out);
   return status;
 }

@@ -72,8 +72,8 @@ static dea_status print_names(struct dea_cli *cli, const char *what)
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
   for (size_t i = 0; i < CLI_KINDS; i++) {
-    if (cli_kinds[i].list != NULL && strcmp(cli_kinds[i].name, what) == 0) {
-      status = cli_kinds[i].list(cli, &out);
+    if (cli_kinds[i].name != NULL && strcmp(cli_kinds[i].name, what) == 0) {
+      status = cli_kind_list(cli, &cli_kinds[i], &out);
     }
   }
   return cli_print_text(status, &out);

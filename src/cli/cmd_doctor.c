@@ -1,4 +1,5 @@
-#define _GNU_SOURCE // popen, access
+#define _POSIX_C_SOURCE 200809L // access, getcwd
+#include "base/program.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/bench.h"
@@ -14,8 +15,6 @@
 #include <string.h>
 #include <udunits2.h>
 #include <unistd.h>
-
-enum { OUTPUT_SIZE = 8192 };
 
 /* One line; advice: what to do when it is not ok. Whether it is. */
 static bool print_row(bool ok, const char *what, const char *found, const char *advice)
@@ -84,34 +83,27 @@ static dea_status check_examples(struct dea_context *ctx)
   return status;
 }
 
-/* Runs a command line and keeps what it prints; false when it fails. */
-static bool capture(const char *command, char output[OUTPUT_SIZE])
+/* Runs gnuplot and keeps what it prints; false when it fails. */
+static bool run_gnuplot(const struct dea_context *ctx, char *option, char *value,
+                        char said[DEA_PROGRAM_SAID])
 {
-  output[0] = '\0';
-  // NOLINTNEXTLINE(cert-env33-c): commands of this file, nothing of the user
-  FILE *pipe = popen(command, "r");
-  if (pipe == NULL) {
-    return false;
-  }
-  size_t n = fread(output, 1, OUTPUT_SIZE - 1, pipe);
-  output[n] = '\0';
-  char rest[512];
-  while (fread(rest, 1, sizeof rest, pipe) > 0) {
-    // read to the end, or the command would die of a closed pipe
-  }
-  return pclose(pipe) == 0;
+  static const double limit_s = 60;
+  struct dea_program program;
+  int number;
+  char *const argv[] = {(char *)"gnuplot", option, value, NULL};
+  said[0] = '\0';
+  return dea_program_start(argv, ".", true, &program) == 0 &&
+         dea_program_wait(ctx, &program, limit_s, said, &number) == DEA_PROGRAM_DONE;
 }
 
 /* Draws a line with a terminal: that it is listed does not mean that its fonts are there. */
-static void check_terminal(const char *terminal)
+static void check_terminal(const struct dea_context *ctx, const char *terminal)
 {
-  char command[256], output[OUTPUT_SIZE];
+  char command[256], output[DEA_PROGRAM_SAID], what[64];
   snprintf(command, sizeof command,
-           "gnuplot -e \"set terminal %s; set output '/dev/null'; set title 'E'; plot x\" 2>&1",
-           terminal);
-  bool ok = capture(command, output) && output[0] == '\0';
+           "set terminal %s; set output '/dev/null'; set title 'E'; plot x", terminal);
+  bool ok = run_gnuplot(ctx, (char *)"-e", command, output) && output[0] == '\0';
   output[strcspn(output, "\n")] = '\0';
-  char what[64];
   snprintf(what, sizeof what, "figures as %s", terminal);
   print_row(ok, what, ok ? "drawn" : output,
             "install gnuplot-nox and a font "
@@ -152,17 +144,17 @@ static void check_module(const struct module *module)
   print_row(ok, module->what, ok ? path : of_build ? "not found" : "not built", advice);
 }
 
-static void check_gnuplot(void)
+static void check_gnuplot(const struct dea_context *ctx)
 {
-  char output[OUTPUT_SIZE];
-  bool ok = capture("gnuplot --version 2>/dev/null", output);
+  char output[DEA_PROGRAM_SAID];
+  const bool ok = run_gnuplot(ctx, (char *)"--version", NULL, output);
   output[strcspn(output, "\n")] = '\0';
   print_row(ok, "gnuplot", ok ? output : "not found on the PATH",
             "install gnuplot-nox; without it a run writes data and no figures");
   if (ok) {
-    check_terminal("svg");
-    check_terminal("pdfcairo");
-    check_terminal("pngcairo");
+    check_terminal(ctx, "svg");
+    check_terminal(ctx, "pdfcairo");
+    check_terminal(ctx, "pngcairo");
   }
 }
 
@@ -188,7 +180,7 @@ static dea_status run(struct dea_cli *cli, void *request)
   const bool units = check_units();
   dea_status status = check_materials(cli->ctx, &materials);
   status = status == DEA_OK ? check_examples(cli->ctx) : status;
-  check_gnuplot();
+  check_gnuplot(cli->ctx);
   for (size_t i = 0; i < sizeof modules / sizeof modules[0]; i++) {
     check_module(&modules[i]);
   }

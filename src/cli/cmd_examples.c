@@ -26,11 +26,10 @@ static dea_status read_files(struct dea_context *ctx, const char *folder, const 
       continue;
     }
     struct cli_data_file *file = &list->files[list->count];
-    const char *name = path + strlen(folder) + 1;
     file->path = dea_copy_text(ctx, path, strlen(path));
-    file->name = dea_copy_text(ctx, name, strlen(name));
+    DEA_TRY_MEMORY(file->path != NULL);
+    file->name = file->path + strlen(folder) + 1;
     list->count++;
-    DEA_TRY_MEMORY(file->path != NULL && file->name != NULL);
   }
   return DEA_OK;
 }
@@ -71,7 +70,6 @@ void cli_data_free(struct dea_context *ctx, struct cli_data_list *list)
 {
   for (size_t i = 0; i < list->count; i++) {
     dea_free(ctx, list->files[i].path);
-    dea_free(ctx, list->files[i].name);
   }
   dea_free(ctx, list->files);
   dea_free(ctx, list->folder);

@@ -260,6 +260,19 @@ static void print_device_fit(const struct dea_device_fit *fit)
   print_next("measurement", fit->next, fit->next_count);
 }
 
+/* A parameter of Weibull's law. */
+static void print_weibull(const struct dea_weibull_fit *fit, size_t k, const char *name,
+                          const struct shown *shown, bool fixed)
+{
+  const struct dea_fit_value value = {.value = fit->value[k],
+                                      .std = fit->std[k],
+                                      .low = fit->low[k],
+                                      .high = fit->high[k],
+                                      .fixed = fixed};
+  printf("  %-20s %10.6g", name, shown->factor * value.value);
+  print_known(&value, shown, 3, "", false);
+}
+
 /* When so many have failed by Weibull's law. */
 static void print_shares(const struct dea_weibull_fit *fit, const char *what,
                          const struct shown *shown)
@@ -295,19 +308,13 @@ static void print_breakdown_fit(const struct dea_breakdown_fit *fit)
     printf("at the stretch %.4g\n\n", alike);
   }
   for (size_t k = 0; k < DEA_WEIBULL_PARAMS; k++) {
-    const struct dea_fit_value value = {.value = fit->fit.value[k],
-                                        .std = fit->fit.std[k],
-                                        .low = fit->fit.low[k],
-                                        .high = fit->fit.high[k],
-                                        .fixed = fit->data.held[k]};
     const struct dea_quantity *given =
         k == DEA_WEIBULL_STRETCH ? &fit->file->exponent : &fit->file->thickness_exponent;
-    if (value.fixed && given->origin == DEA_ABSENT) {
+    if (fit->data.held[k] && given->origin == DEA_ABSENT) {
       printf("  %-20s    unknown: all films were alike in it, and it was not given\n",
              rows[k].name);
     } else {
-      printf("  %-20s %10.6g", rows[k].name, rows[k].shown.factor * value.value);
-      print_known(&value, &rows[k].shown, 3, "", false);
+      print_weibull(&fit->fit, k, rows[k].name, &rows[k].shown, fit->data.held[k]);
     }
   }
   print_shares(&fit->fit, "of such films break", &rows[0].shown);
@@ -354,12 +361,7 @@ static void print_life_law(const struct dea_life_fit *fit)
   printf("\nWeibull's law of the life in %s; scale: by when 63.2 %% have failed\n\n",
          dea_life_clock_units[clock]);
   for (size_t k = 0; k < 2; k++) {
-    const struct dea_fit_value value = {.value = fit->fit.value[k],
-                                        .std = fit->fit.std[k],
-                                        .low = fit->fit.low[k],
-                                        .high = fit->fit.high[k]};
-    printf("  %-20s %10.6g", names[k], shown[k].factor * value.value);
-    print_known(&value, &shown[k], 3, "", false);
+    print_weibull(&fit->fit, k, names[k], &shown[k], false);
   }
   print_shares(&fit->fit, "fail", &shown[0]);
 }

@@ -103,7 +103,6 @@ static dea_status run(struct dea_cli *cli, void *user)
   char program[4096] = "";
   struct dea_studio_options options = {.program = program, .port = (int)request->port};
   options.open = split(request->what, &folder);
-  options.folder = ".";
   dea_status status = cli_examples_find(cli->ctx, ".yaml", &list);
   struct dea_studio_example *examples = dea_alloc(cli->ctx, list.count, sizeof *examples);
   if (readlink("/proc/self/exe", program, sizeof program - 1) <= 0) {

@@ -51,10 +51,9 @@ void dea_studio_line_show(const struct dea_studio_line *line, struct dea_text *o
 
 // Processes ---------------------------------------------------------------------------------------
 
-/* Starts the command in the folder, in a group of its own; out, err: what it writes to. It dies
- * with the thread that calls this. */
-static pid_t start(const char *program, int folder, const struct dea_studio_line *line, int out,
-                   int err)
+/* Starts the command, in a group of its own; out, err: what it writes to. It dies with the thread
+ * that calls this. */
+static pid_t start(const char *program, const struct dea_studio_line *line, int out, int err)
 {
   const char *argv[DEA_STUDIO_ARGUMENTS] = {program};
   size_t count = 1;
@@ -66,9 +65,8 @@ static pid_t start(const char *program, int folder, const struct dea_studio_line
   if (pid == 0) {                     // only what a process of several threads may call here
     prctl(PR_SET_PDEATHSIG, SIGKILL); // what a run has kept is whole at any time
     signal(SIGINT, SIG_DFL);
-    if (getppid() != parent || setpgid(0, 0) != 0 || fchdir(folder) != 0 ||
-        dup2(nothing, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0 ||
-        dup2(err, STDERR_FILENO) < 0) {
+    if (getppid() != parent || setpgid(0, 0) != 0 || dup2(nothing, STDIN_FILENO) < 0 ||
+        dup2(out, STDOUT_FILENO) < 0 || dup2(err, STDERR_FILENO) < 0) {
       _exit(127);
     }
     execv(program, (char *const *)argv);
@@ -92,13 +90,12 @@ static void read_all(int file, struct dea_bytes *out)
   out->length -= !out->failed;
 }
 
-dea_status dea_studio_run_command(struct dea_context *ctx, const char *program, int folder,
+dea_status dea_studio_run_command(struct dea_context *ctx, const char *program,
                                   const struct dea_studio_line *line, double limit_s,
                                   struct dea_bytes *out, struct dea_bytes *err, int *code)
 {
   const int files[2] = {memfd_create("out", MFD_CLOEXEC), memfd_create("err", MFD_CLOEXEC)};
-  const pid_t pid =
-      files[0] >= 0 && files[1] >= 0 ? start(program, folder, line, files[0], files[1]) : -1;
+  const pid_t pid = files[0] >= 0 && files[1] >= 0 ? start(program, line, files[0], files[1]) : -1;
   const double began_s = dea_clock_s();
   int state = 0;
   pid_t ended = 0;
@@ -148,7 +145,6 @@ struct job {
 
 struct dea_studio_jobs {
   const char *program;
-  int folder;
   int cores;
   int last_id;
   pthread_mutex_t lock;
@@ -156,8 +152,7 @@ struct dea_studio_jobs {
   struct job jobs[JOBS_MAX];
 };
 
-struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const char *program,
-                                               int folder)
+struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const char *program)
 {
   struct dea_studio_jobs *jobs = dea_alloc(ctx, 1, sizeof *jobs);
   const long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -165,7 +160,6 @@ struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const ch
     return NULL;
   }
   jobs->program = program;
-  jobs->folder = folder;
   jobs->cores = cores > 1 ? (int)cores : 1;
   if (pthread_mutex_init(&jobs->lock, NULL) != 0) {
     dea_fail(ctx, DEA_E_IO, "no queue: %s", strerror(errno));
@@ -296,8 +290,7 @@ static void begin(struct dea_studio_jobs *jobs, struct job *job)
 {
   int writes;
   job->terminal = open_terminal(&writes);
-  job->process =
-      job->terminal >= 0 ? start(jobs->program, jobs->folder, &job->line, writes, writes) : -1;
+  job->process = job->terminal >= 0 ? start(jobs->program, &job->line, writes, writes) : -1;
   job->state = job->process > 0 ? RUNNING : FAILED;
   if (writes >= 0) {
     close(writes);

@@ -102,12 +102,6 @@ static bool is_run(const struct dea_studio_exchange *w, const char *name)
   return dea_studio_name_good(name, false) && results[0] != '\0';
 }
 
-/* Its path; owned by the caller. */
-static char *path_of(const struct dea_studio_exchange *w, const char *name)
-{
-  return dea_path_join(w->ctx, w->studio->path, name);
-}
-
 /* Adds the name of a file to a command, which must not take it for an option. */
 static void add_file(struct dea_studio_line *line, const char *name)
 {
@@ -195,14 +189,12 @@ static void store_file(struct dea_studio_exchange *w)
     respond_json(w, 200, other); // no failure, which a browser would note
   } else {
     char now[65];
-    char *path = path_of(w, name);
     dea_sha256_hex(w->body, w->body_length, now);
-    if (path != NULL && dea_file_write(w->ctx, path, w->body, w->body_length) == DEA_OK) {
+    if (dea_file_write(w->ctx, name, w->body, w->body_length) == DEA_OK) {
       respond_json(w, 200, json_pack("{s:s}", "version", now));
     } else {
       respond_failure(w);
     }
-    dea_free(w->ctx, path);
   }
   json_decref(there);
   pthread_mutex_unlock(&w->studio->write_lock);
@@ -259,8 +251,8 @@ static json_t *find_command(struct dea_studio_exchange *w, const struct dea_stud
   struct dea_bytes out = {.ctx = w->ctx}, err = {.ctx = w->ctx};
   struct dea_text shown = {.ctx = w->ctx};
   int code = -1;
-  const dea_status status = dea_studio_run_command(
-      w->ctx, w->studio->options.program, w->studio->folder, line, QUESTION_S, &out, &err, &code);
+  const dea_status status = dea_studio_run_command(w->ctx, w->studio->options.program, line,
+                                                   QUESTION_S, &out, &err, &code);
   json_t *json = json_object(), *said = NULL;
   dea_studio_line_show(line, &shown);
   if (status == DEA_OK) {
@@ -463,17 +455,14 @@ static dea_status draw_runs(struct dea_context *ctx, const struct dea_report_run
 }
 
 /* Of the sweeps that are there the first of the run's design. */
-static dea_status find_sweep(struct dea_context *ctx, const char *folder, const json_t *sweeps,
+static dea_status find_sweep(struct dea_context *ctx, const json_t *sweeps,
                              struct dea_report_run *run, char **bytes)
 {
   for (size_t i = 0; i < json_array_size(sweeps) && run->emulator == NULL; i++) {
     const json_t *name = json_object_get(json_array_get(sweeps, i), "name");
-    char *path = dea_path_join(ctx, folder, json_string_value(name));
     dea_free(ctx, *bytes);
     *bytes = NULL;
-    const dea_status status =
-        path != NULL ? dea_report_runs_explore(ctx, path, run, 1, bytes) : DEA_E_MEMORY;
-    dea_free(ctx, path);
+    const dea_status status = dea_report_runs_explore(ctx, json_string_value(name), run, 1, bytes);
     if (status == DEA_E_MEMORY) {
       return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     }
@@ -482,39 +471,31 @@ static dea_status find_sweep(struct dea_context *ctx, const char *folder, const 
   return DEA_OK;
 }
 
-/* Adds HTML whose numbers the page's script finds. folder: that has runs [name], at most RUNS_MAX,
- * also ones that go on; measured: a table beside them, NULL: none; sweeps [{name}]: folders of
+/* Adds HTML whose numbers the page's script finds. names: of runs, at most RUNS_MAX, also ones that
+ * go on; measured: a table beside them, NULL: none; sweeps [{name}]: folders of
  * sweeps over numbers of designs. One thread at a time. DEA_E_IO as dea_run_read, or of the table
  * after findings.
  */
-static dea_status add_runs_html(struct dea_context *ctx, const char *folder, const json_t *names,
-                                const char *measured, const json_t *sweeps, enum view view,
-                                struct dea_text *out)
+static dea_status add_runs_html(struct dea_context *ctx, const json_t *names, const char *measured,
+                                const json_t *sweeps, enum view view, struct dea_text *out)
 {
   struct dea_report_run runs[RUNS_MAX] = {{0}};
-  char *paths[RUNS_MAX + 1] = {NULL}, *emulator = NULL;
+  const char *paths[RUNS_MAX];
+  char *emulator = NULL;
   const size_t count = json_array_size(names);
-  dea_status status = DEA_OK;
-  for (size_t i = 0; i <= count && status == DEA_OK; i++) {
-    const char *name = i < count ? json_string_value(json_array_get(names, i)) : measured;
-    paths[i] = name != NULL ? dea_path_join(ctx, folder, name) : NULL;
-    status = paths[i] != NULL || name == NULL ? DEA_OK : DEA_E_MEMORY;
+  for (size_t i = 0; i < count; i++) {
+    paths[i] = json_string_value(json_array_get(names, i));
   }
-  if (status == DEA_OK) {
-    status = dea_report_runs_open(ctx, (const char *const *)paths, count, runs);
-  }
+  dea_status status = dea_report_runs_open(ctx, paths, count, runs);
   if (status == DEA_OK && view == SLIDERS) {
-    status = find_sweep(ctx, folder, sweeps, &runs[0], &emulator);
+    status = find_sweep(ctx, sweeps, &runs[0], &emulator);
   }
   for (size_t i = 0; i < count && status == DEA_OK; i++) { // they are known by their folders here
-    snprintf(runs[i].title, sizeof runs[i].title, "%s", dea_path_name(paths[i]));
+    snprintf(runs[i].title, sizeof runs[i].title, "%s", paths[i]);
   }
-  status = status == DEA_OK ? draw_runs(ctx, runs, count, paths[count], view, out) : status;
+  status = status == DEA_OK ? draw_runs(ctx, runs, count, measured, view, out) : status;
   dea_free(ctx, emulator);
   dea_report_runs_close(ctx, runs, count);
-  for (size_t i = 0; i <= RUNS_MAX; i++) {
-    dea_free(ctx, paths[i]);
-  }
   return DEA_CHAIN(ctx, status);
 }
 
@@ -537,8 +518,8 @@ static void get_runs(struct dea_studio_exchange *w)
   struct dea_text out = {.ctx = w->ctx};
   json_t *lists = view == SLIDERS ? dea_studio_list(w->studio->folder) : NULL;
   pthread_mutex_lock(&w->studio->results_lock);
-  const dea_status status = add_runs_html(w->ctx, w->studio->path, runs, measured,
-                                          json_object_get(lists, "sweeps"), view, &out);
+  const dea_status status =
+      add_runs_html(w->ctx, runs, measured, json_object_get(lists, "sweeps"), view, &out);
   pthread_mutex_unlock(&w->studio->results_lock);
   if (status == DEA_OK && !out.failed) {
     respond(w, 200, html_mime, dea_text_get(&out), out.length);
@@ -607,18 +588,16 @@ static bool copy_text(struct dea_studio_exchange *w, const char *text, size_t le
                       const char *to)
 {
   struct stat file;
-  char *path = path_of(w, to);
   bool done = false;
   pthread_mutex_lock(&w->studio->write_lock);
   if (fstatat(w->studio->folder, to, &file, AT_SYMLINK_NOFOLLOW) == 0) {
     respond_error(w, 409, "a file of that name is there");
-  } else if (path == NULL || dea_file_write(w->ctx, path, text, length) != DEA_OK) {
+  } else if (dea_file_write(w->ctx, to, text, length) != DEA_OK) {
     respond_failure(w);
   } else {
     done = true;
   }
   pthread_mutex_unlock(&w->studio->write_lock);
-  dea_free(w->ctx, path);
   return done;
 }
 

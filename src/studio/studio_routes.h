@@ -13,8 +13,8 @@ enum { DEA_STUDIO_SECRET_BYTES = 18, DEA_STUDIO_SECRET_SIZE = 2 * DEA_STUDIO_SEC
 struct dea_studio {
   struct dea_context *ctx; // of the thread that serves
   struct dea_studio_options options;
-  char *path;                       // of the folder, without links
-  int folder;                       // open
+  char *path;                       // of the current folder, without links
+  int folder;                       // that, open
   char scratch[DEA_TEMPORARY_SIZE]; // a folder for files on the way
   unsigned scratch_count;           // names that were given there
   struct dea_studio_jobs *jobs;

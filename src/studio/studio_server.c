@@ -51,7 +51,8 @@ static int refuse(const struct dea_studio *studio, const struct mg_connection *c
   if (origin != NULL && !is_one_of(origin, studio->origins[0], studio->origins[1])) {
     return 403;
   }
-  if (info->local_uri == NULL || info->local_uri[0] != '/' || !is_secret(studio, info->local_uri + 1)) {
+  if (info->local_uri == NULL || info->local_uri[0] != '/' ||
+      !is_secret(studio, info->local_uri + 1)) {
     return 403;
   }
   if (!reads && !writes) {
@@ -280,16 +281,14 @@ static dea_status open_listener(struct dea_studio *studio)
 static dea_status begin(struct dea_studio *studio)
 {
   struct dea_context *ctx = studio->ctx;
-  studio->path = realpath(studio->options.folder, NULL);
-  studio->folder =
-      studio->path != NULL ? open(studio->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
-  if (studio->folder < 0) {
-    return dea_fail(ctx, DEA_E_IO, "cannot open the folder %s: %s", studio->options.folder,
-                    strerror(errno));
+  studio->path = realpath(".", NULL);
+  studio->folder = open(".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (studio->path == NULL || studio->folder < 0) {
+    return dea_fail(ctx, DEA_E_IO, "cannot open the folder: %s", strerror(errno));
   }
   DEA_TRY(ctx, create_secret(studio));
   DEA_TRY(ctx, dea_folder_create_temporary(ctx, "studio", studio->scratch));
-  studio->jobs = dea_studio_jobs_create(ctx, studio->options.program, studio->folder);
+  studio->jobs = dea_studio_jobs_create(ctx, studio->options.program);
   if (studio->jobs == NULL) {
     return dea_context_status(ctx);
   }
