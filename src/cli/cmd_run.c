@@ -182,28 +182,21 @@ static void print_breakdown(const struct dea_load_point *p, const struct dea_bre
 /* slack: of a film without tension. */
 static void print_event(const struct dea_event *event, const struct dea_breakdown *film, bool slack)
 {
+  static const char *const names[] = {[DEA_EVENT_PULL_IN] = "pull-in",
+                                      [DEA_EVENT_SNAP_BACK] = "snap-back",
+                                      [DEA_EVENT_SLACK] = "the film goes slack",
+                                      [DEA_EVENT_BUCKLING] = "the film buckles"};
   const struct dea_load_point *p = &event->point;
   printf("  at %.4g kV", 1e-3 * p->voltage_V);
   if (!isnan(p->electrode_stretch)) { // of a disc
     printf(", electrode stretch %.5g", p->electrode_stretch);
   }
   fputs(": ", stdout);
-  switch (event->kind) {
-  case DEA_EVENT_PULL_IN:
-    puts(slack ? "pull-in of a slack film: not predictive" : "pull-in");
-    break;
-  case DEA_EVENT_SNAP_BACK:
-    puts("snap-back");
-    break;
-  case DEA_EVENT_SLACK:
-    puts("the film goes slack");
-    break;
-  case DEA_EVENT_BREAKDOWN:
+  if (event->kind == DEA_EVENT_BREAKDOWN) {
     print_breakdown(p, film);
-    break;
-  case DEA_EVENT_BUCKLING:
-    puts("the film buckles");
-    break;
+  } else {
+    printf("%s%s\n", names[event->kind],
+           slack && event->kind == DEA_EVENT_PULL_IN ? " of a slack film: not predictive" : "");
   }
 }
 

@@ -13,7 +13,7 @@ struct dea_optimise_options {
 };
 
 struct dea_optimise_report {
-  struct dea_optimum optima[DEA_FRONT_MAX]; // one, or the front
+  struct dea_optimum optima[DEA_EXPLORE_FRONT_MAX]; // one, or the front
   size_t count;
   size_t before, evaluations, failed;   // kept before, and now in all; without all values
   size_t scattered;                     // designs that stand for one; 1: without scatter

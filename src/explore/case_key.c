@@ -695,28 +695,6 @@ bool dea_case_key_is_held(const struct dea_case_key *case_key, size_t quantity)
          strcmp(case_key->quantities[quantity].key, "force_N") == 0;
 }
 
-/* A word at voltage k, which several have to say. */
-static void name_at(const struct dea_case_key *case_key, const char *word, size_t k, char *out,
-                    size_t size)
-{
-  if (case_key->voltage_count == 1) {
-    snprintf(out, size, "%s", word);
-  } else {
-    snprintf(out, size, "%s@%.6g", word, case_key->voltages_V[k]);
-  }
-}
-
-void dea_case_key_value_name(const struct dea_case_key *case_key, size_t i, char *out, size_t size)
-{
-  const size_t count = case_key->quantity_count;
-  name_at(case_key, case_key->quantities[i % count].key, i / count, out, size);
-}
-
-void dea_case_key_flags_name(const struct dea_case_key *case_key, size_t k, char *out, size_t size)
-{
-  name_at(case_key, "flags", k, out, size);
-}
-
 double dea_limit_margin(const struct dea_case_key *case_key, const struct dea_limit *limit,
                         const double *q)
 {

@@ -81,10 +81,6 @@ void dea_case_key_destroy(struct dea_case_key *case_key);
 int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key);
 /* Whether a quantity is taken with the tip of compute.force held at its first depth. */
 bool dea_case_key_is_held(const struct dea_case_key *case_key, size_t quantity);
-/* Name of value i of a case: "centre_z_m", with several voltages "centre_z_m@6000". */
-void dea_case_key_value_name(const struct dea_case_key *case_key, size_t i, char *out, size_t size);
-/* The same of the flags at voltage k: "flags", "flags@6000". */
-void dea_case_key_flags_name(const struct dea_case_key *case_key, size_t k, char *out, size_t size);
 /* A limit's margin at a case's last voltage, over its scale: below 0 it is crossed; NAN: no value.
  */
 double dea_limit_margin(const struct dea_case_key *case_key, const struct dea_limit *limit,

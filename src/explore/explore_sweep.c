@@ -1,3 +1,4 @@
+#define _GNU_SOURCE // qsort_r
 #include "explore/explore_sweep.h"
 
 #include "explore/pool.h"
@@ -12,25 +13,21 @@
 enum { GROUP = 40 };                // one of them is solved from rest, and what is near is quick
 static const double whole_wide = 4; // a whole number's range counts so many times: another mesh
 
-struct item {
-  double value;
-  size_t number;
-};
-
 struct splitting {
   const double *p;
-  size_t params, group;
+  size_t params;
   double scale[DEA_CASE_PARAMS_MAX]; // 1 over the range of all
-  struct item *items;                // [count] of the part that is split
+  size_t widest;                     // parameter of the part that is split
   struct dea_order *out;
 };
 
-static int compare(const void *a, const void *b)
+/* Cases by their widest parameter. */
+static int compare(const void *a, const void *b, void *user)
 {
-  const struct item *x = a, *y = b;
-  return x->value < y->value   ? -1
-         : x->value > y->value ? 1
-                               : (x->number > y->number) - (x->number < y->number);
+  const struct splitting *w = user;
+  const size_t i = *(const size_t *)a, k = *(const size_t *)b;
+  const double x = w->p[i * w->params + w->widest], y = w->p[k * w->params + w->widest];
+  return x < y ? -1 : x > y ? 1 : (i > k) - (i < k);
 }
 
 /* Range of a parameter over cases of the order. */
@@ -78,9 +75,8 @@ static void close_group(struct splitting *w, size_t from, size_t count)
 /* Halves a part of the order across its widest parameter, down to groups. */
 static void split(struct splitting *w, size_t from, size_t count)
 {
-  size_t widest = 0;
   double most = -1;
-  if (count <= w->group) {
+  if (count <= w->out->group) {
     close_group(w, from, count);
     return;
   }
@@ -89,17 +85,10 @@ static void split(struct splitting *w, size_t from, size_t count)
     const double wide = w->scale[j] * range(w, j, from, count, &low);
     if (wide > most) {
       most = wide;
-      widest = j;
+      w->widest = j;
     }
   }
-  for (size_t i = 0; i < count; i++) {
-    const size_t number = w->out->cases[from + i];
-    w->items[i] = (struct item){w->p[number * w->params + widest], number};
-  }
-  qsort(w->items, count, sizeof *w->items, compare);
-  for (size_t i = 0; i < count; i++) {
-    w->out->cases[from + i] = w->items[i].number;
-  }
+  qsort_r(w->out->cases + from, count, sizeof *w->out->cases, compare, w);
   split(w, from, count / 2);
   split(w, from + count / 2, count - count / 2);
 }
@@ -110,13 +99,12 @@ dea_status dea_order_of(struct dea_arena *memory, const double *p, size_t count,
   *out = (struct dea_order){.group = group};
   out->cases = dea_arena_alloc(memory, count, sizeof *out->cases);
   out->first = dea_arena_alloc(memory, count, sizeof *out->first);
-  struct item *items = dea_arena_alloc(memory, count, sizeof *items);
   DEA_TRY_MEMORY(!memory->failed);
   for (size_t i = 0; i < count; i++) {
     out->cases[i] = out->first[i] = i;
   }
   if (group > 1) {
-    struct splitting w = {.p = p, .params = params, .group = group, .items = items, .out = out};
+    struct splitting w = {.p = p, .params = params, .out = out};
     for (size_t j = 0; j < params; j++) {
       double low;
       const double wide = range(&w, j, 0, count, &low);
@@ -145,7 +133,7 @@ struct work {
   struct dea_order order;
   struct dea_store *store;
   struct stretch *stretches; // [processes]
-  size_t next;               // place that nobody has got
+  struct stretch rest;       // that nobody has got
   size_t block;              // places of a shard between those of others
 };
 
@@ -178,27 +166,26 @@ static void share(struct work *w, struct stretch *own)
   longest->end = own->next;
 }
 
-/* Moves a process to its next place that is open: on its stretch, else on one that nobody has got,
- * else on a share of another's. false: there is none. */
+/* Whether a stretch has a place that is open; goes on to that. */
+static bool find_open(const struct work *w, struct stretch *on)
+{
+  while (on->next < on->end && !is_open(w, on->next)) {
+    on->next++;
+  }
+  return on->next < on->end;
+}
+
+/* Moves a process to its next place that is open: on its stretch, else on a group that nobody has
+ * got, else on a share of another's. false: there is none. */
 static bool move_on(struct work *w, struct stretch *own)
 {
-  for (;;) {
-    while (own->next < own->end && !is_open(w, own->next)) {
-      own->next++;
-    }
-    if (own->next < own->end) {
-      return true;
-    }
-    while (w->next < w->plan.count && !is_open(w, w->next)) {
-      w->next++;
-    }
-    if (w->next < w->plan.count) {
-      *own = (struct stretch){w->next, w->next + 1};
-      while (own->end < w->plan.count &&
-             w->order.first[own->end] == w->order.first[own->next]) { // the group
-        own->end++;
+  while (!find_open(w, own)) {
+    if (find_open(w, &w->rest)) {
+      const size_t *first = w->order.first, begin = w->rest.next;
+      while (w->rest.next < w->rest.end && first[w->rest.next] == first[begin]) {
+        w->rest.next++;
       }
-      w->next = own->end;
+      *own = (struct stretch){begin, w->rest.next};
     } else {
       share(w, own);
       if (own->next == own->end) {
@@ -206,6 +193,7 @@ static bool move_on(struct work *w, struct stretch *own)
       }
     }
   }
+  return true;
 }
 
 /* The next case of this shard that is not done: neighbours to the same process. */
@@ -270,6 +258,7 @@ static dea_status evaluate(struct work *w)
                        warms ? GROUP : 1, &w->order));
   w->block = w->plan.count / (SHARES * w->options->shard.parts);
   w->block = w->block < 1 ? 1 : w->block > w->order.group ? w->order.group : w->block;
+  w->rest.end = w->plan.count;
   w->stretches = dea_arena_alloc(&w->memory, w->options->processes, sizeof *w->stretches);
   return w->stretches != NULL ? evaluate_all(w) : DEA_E_MEMORY;
 }

@@ -35,6 +35,17 @@ struct column {
   const char *unit, *meaning; // unit: NULL for words
 };
 
+/* A word at voltage k: "centre_z_m", of several voltages "centre_z_m@6000". */
+static void name_at(const struct dea_case_key *key, const char *word, size_t k, char *out,
+                    size_t size)
+{
+  if (key->voltage_count == 1) {
+    snprintf(out, size, "%s", word);
+  } else {
+    snprintf(out, size, "%s@%.6g", word, key->voltages_V[k]);
+  }
+}
+
 static size_t list_columns(const struct work *w, struct column *out)
 {
   const struct dea_case_key *key = w->case_key;
@@ -47,15 +58,15 @@ static size_t list_columns(const struct work *w, struct column *out)
     next++;
   }
   for (size_t i = 0; i < w->values; i++) {
-    const struct dea_column *shown = &key->quantities[i % key->quantity_count].shown;
-    *next = (struct column){VALUE, i, "", shown->si_unit, shown->meaning};
-    dea_case_key_value_name(key, i, next->name, sizeof next->name);
+    const struct dea_explored *of = &key->quantities[i % key->quantity_count];
+    *next = (struct column){VALUE, i, "", of->shown.si_unit, of->shown.meaning};
+    name_at(key, of->key, i / key->quantity_count, next->name, sizeof next->name);
     next++;
   }
   *next++ = (struct column){TIME, 0, "time", "s", "of the evaluation"};
   for (size_t k = 0; k < key->voltage_count; k++) {
     *next = (struct column){FLAGS, k, "", NULL, "what a reader has to know of the numbers"};
-    dea_case_key_flags_name(key, k, next->name, sizeof next->name);
+    name_at(key, "flags", k, next->name, sizeof next->name);
     next++;
   }
   *next++ = (struct column){REASON, 0, "reason", NULL, "why a value is missing"};
@@ -299,16 +310,18 @@ static dea_status write_limits(const struct work *w)
 static dea_status write_indices(const struct work *w, double *values)
 {
   struct dea_text out = {.ctx = w->ctx};
+  const struct dea_case_key *key = w->case_key;
   const size_t n = w->plan->samples;
   char name[64];
   dea_text_add(&out, "quantity,variable,first,total\n");
   for (size_t i = 0; i < w->values; i++) {
     get_values(w, i, values);
-    dea_case_key_value_name(w->case_key, i, name, sizeof name);
+    name_at(key, key->quantities[i % key->quantity_count].key, i / key->quantity_count, name,
+            sizeof name);
     for (size_t j = 0; j < w->params; j++) {
       double first, total;
       dea_sobol_index(values, values + n, values + (2 + j) * n, n, &first, &total);
-      dea_text_add(&out, "%s,%s", name, w->case_key->params[j].param.name);
+      dea_text_add(&out, "%s,%s", name, key->params[j].param.name);
       DEA_CSV_ADD(&out, 12, first, total);
       dea_text_add(&out, "\n");
     }

@@ -669,31 +669,23 @@ static const char *text_of(const json_t *body, const char *key)
   return json_string_value(json_object_get(body, key));
 }
 
-/* The file and the folder that it writes; NULL after an answer. */
-static const char *job_output(struct dea_studio_exchange *w, const char *file, const char *output)
+/* A job that reads a file and writes a folder: {action, file, output, ...}; false after an answer.
+ */
+static bool build_file_job(struct dea_studio_exchange *w, const json_t *body, const char *action,
+                           struct dea_studio_line *line)
 {
+  const char *file = text_of(body, "file"), *output = text_of(body, "output");
+  const bool run = strcmp(action, "run") == 0;
   struct stat info;
   if (file == NULL || output == NULL || !dea_studio_name_good(file, false) || !can_write(w, file) ||
       !dea_studio_name_good(output, false) ||
       (fstatat(w->studio->folder, output, &info, AT_SYMLINK_NOFOLLOW) == 0 &&
        !S_ISDIR(info.st_mode))) {
     respond_error(w, 400, "a file of this folder and a folder for what comes of it are needed");
-    return NULL;
-  }
-  return output;
-}
-
-/* One of the jobs that read a file and write a folder: {action, file, output, ...}. */
-static bool create_file_job(struct dea_studio_exchange *w, const json_t *body, const char *action,
-                            struct dea_studio_line *line)
-{
-  const char *output = job_output(w, text_of(body, "file"), text_of(body, "output"));
-  if (output == NULL) {
     return false;
   }
-  const bool run = strcmp(action, "run") == 0;
   dea_studio_line_add(line, action);
-  add_file(line, text_of(body, "file"));
+  add_file(line, file);
   dea_studio_line_add(line, "-o");
   add_file(line, output);
   if (strcmp(action, "fab") == 0 || strcmp(action, "fit") == 0 ||
@@ -725,27 +717,22 @@ static bool build_report(struct dea_studio_exchange *w, const json_t *body,
 
 static void post_job(struct dea_studio_exchange *w)
 {
-  static const char *const actions[] = {"run", "fab", "fit", "sweep", "optimise"};
+  static const char *const actions[] = {"run", "fab", "fit", "sweep", "optimise", "report"};
   json_t *body = json_loadb(w->body, w->body_length, 0, NULL);
   struct dea_studio_line line = {.count = 0};
   const char *action = text_of(body, "action"), *subject = text_of(body, "file"),
              *output = text_of(body, "output");
-  bool made = false, known = false;
-  if (action != NULL && strcmp(action, "report") == 0) {
-    subject = json_string_value(json_array_get(json_object_get(body, "runs"), 0));
-    output = subject;
-    known = true;
-    made = build_report(w, body, &line);
-  }
+  bool known = false;
   for (size_t i = 0; action != NULL && i < sizeof actions / sizeof actions[0]; i++) {
-    if (strcmp(action, actions[i]) == 0) {
-      known = true;
-      made = create_file_job(w, body, action, &line);
-    }
+    known = known || strcmp(action, actions[i]) == 0;
+  }
+  const bool report = known && strcmp(action, "report") == 0;
+  if (report) {
+    subject = output = json_string_value(json_array_get(json_object_get(body, "runs"), 0));
   }
   if (!known) {
     respond_error(w, 400, "actions are run, fab, fit, sweep, optimise and report");
-  } else if (made) {
+  } else if (report ? build_report(w, body, &line) : build_file_job(w, body, action, &line)) {
     struct dea_text shown = {.ctx = w->ctx};
     dea_studio_line_show(&line, &shown);
     json_t *facts = json_pack("{s:s, s:s, s:s, s:s}", "action", action, "subject", subject,
