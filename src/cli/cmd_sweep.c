@@ -64,7 +64,7 @@ static void print_report(const struct dea_sweep_report *report, const struct req
 
 /* Hands the sweep to Slurm. */
 static dea_status submit(struct dea_cli *cli, const struct request *request,
-                         const struct dea_case_key *case_key)
+                         const struct dea_design_space *space)
 {
   char array[32], merge[32], program[4096]; // the path that other computers have too
   const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
@@ -76,7 +76,7 @@ static dea_status submit(struct dea_cli *cli, const struct request *request,
       .parts = (size_t)request->slurm,
       .processes = request->processes > 0 ? (size_t)request->processes : 1,
   };
-  DEA_TRY(cli->ctx, dea_plan_check(case_key));
+  DEA_TRY(cli->ctx, dea_plan_check(space));
   DEA_TRY(cli->ctx, dea_slurm_submit(cli->ctx, &options, array, merge));
   printf("job %s: an array of %zu parts; job %s: the tables, after all of them, in %s\n", array,
          options.parts, merge, options.folder);
@@ -85,16 +85,16 @@ static dea_status submit(struct dea_cli *cli, const struct request *request,
 
 static dea_status sweep(struct dea_cli *cli, const struct request *request)
 {
-  struct dea_case_key *case_key;
+  struct dea_design_space *space;
   struct dea_sweep_report report = {0};
-  DEA_TRY(cli->ctx, dea_case_key_read(cli->ctx, request->file, &case_key));
-  dea_status status = request->slurm > 0 ? submit(cli, request, case_key)
-                                         : dea_sweep_run(case_key, &request->options, &report);
+  DEA_TRY(cli->ctx, dea_design_space_read(cli->ctx, request->file, &space));
+  dea_status status = request->slurm > 0 ? submit(cli, request, space)
+                                         : dea_sweep_run(space, &request->options, &report);
   if (report.planned > 0) {
     print_report(&report, request);
   }
   dea_free(cli->ctx, report.at);
-  dea_case_key_destroy(case_key);
+  dea_design_space_destroy(space);
   return status;
 }
 

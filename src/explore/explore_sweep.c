@@ -125,7 +125,7 @@ struct stretch {
 };
 
 struct work {
-  const struct dea_case_key *case_key;
+  const struct dea_design_space *space;
   const struct dea_sweep_options *options;
   struct dea_sweep_report *report;
   struct dea_plan plan;
@@ -139,7 +139,7 @@ struct work {
 
 static const double *numbers(const struct work *w, size_t i)
 {
-  return w->plan.p + i * w->case_key->variable_count;
+  return w->plan.p + i * w->space->variable_count;
 }
 
 /* Whether a place of the order is of this shard: blocks of it go round. */
@@ -204,7 +204,7 @@ static bool next_case(void *user, struct dea_case *out)
   if (!move_on(w, own)) {
     return false;
   }
-  const size_t i = w->order.cases[own->next], size = w->case_key->variable_count * sizeof *out->p;
+  const size_t i = w->order.cases[own->next], size = w->space->variable_count * sizeof *out->p;
   const double *near = numbers(w, w->order.first[own->next]);
   const struct dea_case *done = dea_store_find(w->store, near);
   out->number = i;
@@ -219,10 +219,9 @@ static bool next_case(void *user, struct dea_case *out)
 static dea_status keep(void *user, const struct dea_case *done)
 {
   struct work *w = user;
-  DEA_TRY(w->case_key->ctx, dea_store_add(w->store, done));
+  DEA_TRY(w->space->ctx, dea_store_add(w->store, done));
   w->report->now++;
-  dea_progress(w->case_key->ctx, "designs", w->report->before + w->report->now,
-               w->report->of_shard);
+  dea_progress(w->space->ctx, "designs", w->report->before + w->report->now, w->report->of_shard);
   return DEA_OK;
 }
 
@@ -235,8 +234,8 @@ static dea_status evaluate_all(struct work *w)
       w->report->before += is_open(w, i) ? 0U : 1U;
     }
   }
-  DEA_TRY(w->case_key->ctx,
-          dea_pool_create(w->case_key->ctx, &w->case_key->evaluator, w->options->processes, &pool));
+  DEA_TRY(w->space->ctx,
+          dea_pool_create(w->space->ctx, &w->space->evaluator, w->options->processes, &pool));
   dea_status status = dea_pool_run(pool, next_case, keep, w);
   dea_pool_destroy(pool);
   return status;
@@ -245,17 +244,16 @@ static dea_status evaluate_all(struct work *w)
 /* Evaluates what is open, groups after each other. */
 static dea_status evaluate(struct work *w)
 {
-  const struct dea_case_key *case_key = w->case_key;
+  const struct dea_design_space *space = w->space;
   bool whole[DEA_CASE_PARAMS_MAX];
-  for (size_t j = 0; j < case_key->variable_count; j++) {
-    whole[j] = case_key->params[j].whole;
+  for (size_t j = 0; j < space->variable_count; j++) {
+    whole[j] = space->params[j].whole;
   }
   const bool warms = // they may begin from each other
-      case_key->model.type->load != NULL && case_key->file->begin.value == DEA_BEGIN_NEAREST;
+      space->model.type->load != NULL && space->file->begin.value == DEA_BEGIN_NEAREST;
   // of the plan alone: the same whatever is done, and however many processes do it
-  DEA_TRY(case_key->ctx,
-          dea_order_of(&w->memory, w->plan.p, w->plan.count, case_key->variable_count, whole,
-                       warms ? GROUP : 1, &w->order));
+  DEA_TRY(space->ctx, dea_order_of(&w->memory, w->plan.p, w->plan.count, space->variable_count,
+                                   whole, warms ? GROUP : 1, &w->order));
   w->block = w->plan.count / (SHARES * w->options->shard.parts);
   w->block = w->block < 1 ? 1 : w->block > w->order.group ? w->order.group : w->block;
   w->rest.end = w->plan.count;
@@ -264,16 +262,16 @@ static dea_status evaluate(struct work *w)
 }
 
 /* Adds what a case's numbers are flagged with. */
-static void count_flags(const struct dea_case_key *case_key, const struct dea_case *done,
+static void count_flags(const struct dea_design_space *space, const struct dea_case *done,
                         struct dea_sweep_report *report)
 {
   for (size_t f = 0; f < DEA_FLAG_COUNT; f++) {
     size_t k = 0;
-    while (k < case_key->voltage_count && (done->marks[k] >> f & 1U) == 0) {
+    while (k < space->voltage_count && (done->marks[k] >> f & 1U) == 0) {
       k++;
     }
-    if (k < case_key->voltage_count) {
-      const double from_V = case_key->voltages_V[k];
+    if (k < space->voltage_count) {
+      const double from_V = space->voltages_V[k];
       report->flagged_from_V[f] =
           report->flagged[f] == 0 ? from_V : fmin(report->flagged_from_V[f], from_V);
       report->flagged[f]++;
@@ -293,7 +291,7 @@ static void collect(struct work *w)
       continue;
     }
     report->there++;
-    count_flags(w->case_key, done, report);
+    count_flags(w->space, done, report);
     if (done->why[0] == '\0') {
       continue;
     }
@@ -308,32 +306,32 @@ static void collect(struct work *w)
 
 static dea_status run(struct work *w)
 {
-  struct dea_context *ctx = w->case_key->ctx;
+  struct dea_context *ctx = w->space->ctx;
   const struct dea_sweep_options *options = w->options;
   DEA_TRY(ctx, options->force ? dea_store_remove(ctx, options->folder) : DEA_OK);
-  DEA_TRY(ctx, dea_store_open(ctx, options->folder, w->case_key->hash, &w->case_key->evaluator,
+  DEA_TRY(ctx, dea_store_open(ctx, options->folder, w->space->hash, &w->space->evaluator,
                               options->merge ? NULL : &options->shard, &w->store));
   dea_status status = options->merge ? DEA_OK : evaluate(w);
   char message[512];
   snprintf(message, sizeof message, "%.511s", dea_context_message(ctx));
   collect(w);
   if (status != DEA_E_MEMORY && (options->merge || options->shard.parts == 1)) {
-    DEA_TRY(ctx, dea_sweep_write(w->case_key, &w->plan, &options->format, options->folder));
+    DEA_TRY(ctx, dea_sweep_write(w->space, &w->plan, &options->format, options->folder));
     w->report->written = true;
     DEA_TRY(ctx, w->plan.nodes == NULL && options->at_count == 0
                      ? DEA_OK
-                     : dea_sweep_emulate(w->case_key, &w->plan, options, &w->report->at));
+                     : dea_sweep_emulate(w->space, &w->plan, options, &w->report->at));
   }
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
 
-dea_status dea_sweep_run(const struct dea_case_key *case_key,
+dea_status dea_sweep_run(const struct dea_design_space *space,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report)
 {
   struct work w = {
-      .case_key = case_key, .options = options, .report = report, .memory = {.ctx = case_key->ctx}};
+      .space = space, .options = options, .report = report, .memory = {.ctx = space->ctx}};
   *report = (struct dea_sweep_report){0};
-  dea_status status = dea_plan_build(&w.memory, case_key, &w.plan);
+  dea_status status = dea_plan_build(&w.memory, space, &w.plan);
   status = status == DEA_OK ? run(&w) : status;
   dea_store_close(w.store);
   dea_arena_free(&w.memory);

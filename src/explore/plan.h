@@ -1,7 +1,7 @@
 /* Which designs: the numbers of every case of a grid or of samples. */
 #pragma once
 
-#include "explore/case_key.h"
+#include "explore/design_space.h"
 
 enum { DEA_SOBOL_DIMENSIONS = 21 };
 
@@ -28,7 +28,7 @@ struct dea_plan {
 };
 /* Whether a plan can be made of the variables as they are given, which a search does not ask.
  * Errors are findings; DEA_E_DESIGN then. */
-dea_status dea_plan_check(const struct dea_case_key *case_key);
+dea_status dea_plan_check(const struct dea_design_space *space);
 /* Errors (too many cases, what has no range) are findings; DEA_E_DESIGN then. */
-dea_status dea_plan_build(struct dea_arena *memory, const struct dea_case_key *case_key,
+dea_status dea_plan_build(struct dea_arena *memory, const struct dea_design_space *space,
                           struct dea_plan *out);

@@ -14,7 +14,7 @@
 
 struct work {
   struct dea_context *ctx;
-  const struct dea_case_key *case_key;
+  const struct dea_design_space *space;
   const struct dea_plan *plan;
   const struct dea_plot_format *format;
   const char *folder;
@@ -36,37 +36,37 @@ struct column {
 };
 
 /* A word at voltage k: "centre_z_m", of several voltages "centre_z_m@6000". */
-static void name_at(const struct dea_case_key *key, const char *word, size_t k, char *out,
+static void name_at(const struct dea_design_space *space, const char *word, size_t k, char *out,
                     size_t size)
 {
-  if (key->voltage_count == 1) {
+  if (space->voltage_count == 1) {
     snprintf(out, size, "%s", word);
   } else {
-    snprintf(out, size, "%s@%.6g", word, key->voltages_V[k]);
+    snprintf(out, size, "%s@%.6g", word, space->voltages_V[k]);
   }
 }
 
 static size_t list_columns(const struct work *w, struct column *out)
 {
-  const struct dea_case_key *key = w->case_key;
+  const struct dea_design_space *space = w->space;
   struct column *next = out;
   *next++ = (struct column){ID, 0, "id", NULL, "hash of the resolved design"};
   for (size_t j = 0; j < w->params; j++) {
-    const struct dea_fit_param *param = &key->params[j].param;
+    const struct dea_fit_param *param = &space->params[j].param;
     *next = (struct column){VARIABLE, j, "", param->unit, "value in the design"};
     snprintf(next->name, sizeof next->name, "%s", param->name);
     next++;
   }
   for (size_t i = 0; i < w->values; i++) {
-    const struct dea_explored *of = &key->quantities[i % key->quantity_count];
+    const struct dea_explored *of = &space->quantities[i % space->quantity_count];
     *next = (struct column){VALUE, i, "", of->shown.si_unit, of->shown.meaning};
-    name_at(key, of->key, i / key->quantity_count, next->name, sizeof next->name);
+    name_at(space, of->key, i / space->quantity_count, next->name, sizeof next->name);
     next++;
   }
   *next++ = (struct column){TIME, 0, "time", "s", "of the evaluation"};
-  for (size_t k = 0; k < key->voltage_count; k++) {
+  for (size_t k = 0; k < space->voltage_count; k++) {
     *next = (struct column){FLAGS, k, "", NULL, "what a reader has to know of the numbers"};
-    name_at(key, "flags", k, next->name, sizeof next->name);
+    name_at(space, "flags", k, next->name, sizeof next->name);
     next++;
   }
   *next++ = (struct column){REASON, 0, "reason", NULL, "why a value is missing"};
@@ -160,8 +160,8 @@ static dea_status write_h5(const struct work *w, const struct column *columns, s
   }
   dea_h5_begin(&h, w->ctx, path);
   hid_t file = dea_h5_file_create(&h);
-  dea_h5_write_text(&h, file, "question", w->case_key->hash);
-  dea_h5_write_text(&h, file, "model", w->case_key->model.type->name);
+  dea_h5_write_text(&h, file, "question", w->space->hash);
+  dea_h5_write_text(&h, file, "model", w->space->model.type->name);
   hid_t group = dea_h5_group_create(&h, file, "cases");
   for (size_t k = 0; k < count && rows > 0; k++) {
     if (columns[k].kind != TIME) { // the same cases give the same bytes
@@ -178,7 +178,7 @@ static dea_status write_h5(const struct work *w, const struct column *columns, s
 static dea_status write_cases(struct work *w)
 {
   struct column *columns = dea_arena_alloc(
-      &w->memory, 3 + w->params + w->values + w->case_key->voltage_count, sizeof *columns);
+      &w->memory, 3 + w->params + w->values + w->space->voltage_count, sizeof *columns);
   DEA_TRY_MEMORY(columns != NULL);
   const size_t count = list_columns(w, columns);
   DEA_TRY(w->ctx, write_csv(w, columns, count));
@@ -251,12 +251,12 @@ static void get_values(const struct work *w, size_t i, double *out)
 /* Number of samples that are independent: of indices A and B. */
 static size_t independent(const struct work *w)
 {
-  return w->case_key->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
+  return w->space->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
 }
 
 static dea_status write_statistics(struct work *w, double *values)
 {
-  const struct dea_case_key *key = w->case_key;
+  const struct dea_design_space *space = w->space;
   struct dea_text out = {.ctx = w->ctx};
   dea_status status = DEA_OK;
   dea_text_add(&out, "quantity,unit,V (kV),samples,mean,std");
@@ -265,12 +265,12 @@ static dea_status write_statistics(struct work *w, double *values)
   }
   dea_text_add(&out, ",doubted\n");
   for (size_t i = 0; i < w->values && status == DEA_OK; i++) {
-    const struct dea_explored *of = &key->quantities[i % key->quantity_count];
-    const size_t voltage = i / key->quantity_count;
+    const struct dea_explored *of = &space->quantities[i % space->quantity_count];
+    const size_t voltage = i / space->quantity_count;
     get_values(w, i, values);
     status = dea_spread_find(w->ctx, values, independent(w), &w->spreads[i]);
     dea_text_add(&out, "%s,%s,%.6g,%zu", of->key, of->shown.si_unit,
-                 1e-3 * key->voltages_V[voltage], w->spreads[i].count);
+                 1e-3 * space->voltages_V[voltage], w->spreads[i].count);
     DEA_CSV_ADD(&out, 12, w->spreads[i].mean, w->spreads[i].std);
     dea_csv_add_numbers(&out, 12, w->spreads[i].quantile, DEA_SHARES);
     dea_text_add(&out, ",%zu\n", w->doubted[voltage]);
@@ -286,23 +286,23 @@ static dea_status write_limits(const struct work *w)
 {
   struct dea_text out = {.ctx = w->ctx};
   dea_text_add(&out, "quantity,above,below,samples,crossed,probability,standard error\n");
-  for (size_t l = 0; l < w->case_key->limit_count; l++) {
-    const struct dea_limit *limit = &w->case_key->limits[l];
+  for (size_t l = 0; l < w->space->limit_count; l++) {
+    const struct dea_limit *limit = &w->space->limits[l];
     size_t n = 0, crossed = 0;
     for (size_t c = 0; c < independent(w); c++) {
       const struct dea_case *done = w->plan->cases[c];
       n += done != NULL ? 1U : 0U;
-      crossed += done != NULL && !(dea_limit_margin(w->case_key, limit, done->q) >= 0) ? 1U : 0U;
+      crossed += done != NULL && !(dea_limit_margin(w->space, limit, done->q) >= 0) ? 1U : 0U;
     }
     const double share = (double)crossed / (double)n;
-    dea_text_add(&out, "%s", w->case_key->quantities[limit->column].key);
+    dea_text_add(&out, "%s", w->space->quantities[limit->column].key);
     DEA_CSV_ADD(&out, 12, limit->above, limit->below);
     dea_text_add(&out, ",%zu,%zu", n, crossed);
     DEA_CSV_ADD(&out, 12, share, sqrt(share * (1 - share) / (double)n));
     dea_text_add(&out, "\n");
   }
   dea_status status =
-      w->case_key->limit_count > 0 ? dea_text_write(w->ctx, &out, w->folder, "limits.csv") : DEA_OK;
+      w->space->limit_count > 0 ? dea_text_write(w->ctx, &out, w->folder, "limits.csv") : DEA_OK;
   dea_text_free(&out);
   return status;
 }
@@ -310,18 +310,18 @@ static dea_status write_limits(const struct work *w)
 static dea_status write_indices(const struct work *w, double *values)
 {
   struct dea_text out = {.ctx = w->ctx};
-  const struct dea_case_key *key = w->case_key;
+  const struct dea_design_space *space = w->space;
   const size_t n = w->plan->samples;
   char name[64];
   dea_text_add(&out, "quantity,variable,first,total\n");
   for (size_t i = 0; i < w->values; i++) {
     get_values(w, i, values);
-    name_at(key, key->quantities[i % key->quantity_count].key, i / key->quantity_count, name,
-            sizeof name);
+    name_at(space, space->quantities[i % space->quantity_count].key, i / space->quantity_count,
+            name, sizeof name);
     for (size_t j = 0; j < w->params; j++) {
       double first, total;
       dea_sobol_index(values, values + n, values + (2 + j) * n, n, &first, &total);
-      dea_text_add(&out, "%s,%s", name, key->params[j].param.name);
+      dea_text_add(&out, "%s,%s", name, space->params[j].param.name);
       DEA_CSV_ADD(&out, 12, first, total);
       dea_text_add(&out, "\n");
     }
@@ -336,19 +336,19 @@ static dea_status write_indices(const struct work *w, double *values)
 /* Puts quantiles `low` and its opposite of quantity i at voltage v. */
 static void add_point(const struct work *w, size_t i, size_t v, size_t low, struct dea_series *out)
 {
-  const struct dea_case_key *key = w->case_key;
-  const size_t n = key->voltage_count;
-  const double *quantile = w->spreads[v * key->quantity_count + i].quantile;
-  out->values[v] = 1e-3 * key->voltages_V[v];
-  out->values[n + v] = key->quantities[i].shown.factor * quantile[low];
-  out->values[2 * n + v] = key->quantities[i].shown.factor * quantile[DEA_SHARES - 1 - low];
+  const struct dea_design_space *space = w->space;
+  const size_t n = space->voltage_count;
+  const double *quantile = w->spreads[v * space->quantity_count + i].quantile;
+  out->values[v] = 1e-3 * space->voltages_V[v];
+  out->values[n + v] = space->quantities[i].shown.factor * quantile[low];
+  out->values[2 * n + v] = space->quantities[i].shown.factor * quantile[DEA_SHARES - 1 - low];
 }
 
 static dea_status add_bands(const struct work *w, size_t i, struct dea_panel *panel)
 {
   static const char *const titles[] = {"95 %", "68 %"};
   static const enum dea_colour colours[] = {DEA_GREY, DEA_VERMILLION};
-  const size_t n = w->case_key->voltage_count;
+  const size_t n = w->space->voltage_count;
   for (size_t k = 0; k < 2; k++) { // from the outer pair inwards
     struct dea_series *band;
     DEA_TRY(w->ctx, dea_panel_add(w->ctx, panel, n, DEA_BAND, colours[k], titles[k], &band));
@@ -364,7 +364,7 @@ static dea_status add_bands(const struct work *w, size_t i, struct dea_panel *pa
 static dea_status add_line(const struct work *w, size_t i, struct dea_panel *panel, bool dashed,
                            const char *title)
 {
-  const size_t n = w->case_key->voltage_count;
+  const size_t n = w->space->voltage_count;
   struct dea_series *line;
   DEA_TRY(w->ctx, dea_panel_add(w->ctx, panel, n, dashed ? DEA_DASHED : DEA_LINE_MARKED, DEA_BLUE,
                                 title, &line));
@@ -384,8 +384,8 @@ static dea_status add_median(const struct work *w, size_t i, struct dea_panel *p
   const size_t samples = independent(w);
   size_t most = 0, least = samples, good = 0;
   char median[64] = "median", doubts[62], both[DEA_LABEL_SIZE];
-  for (size_t v = 0; v < w->case_key->voltage_count; v++) {
-    const size_t count = w->spreads[v * w->case_key->quantity_count + i].count;
+  for (size_t v = 0; v < w->space->voltage_count; v++) {
+    const size_t count = w->spreads[v * w->space->quantity_count + i].count;
     most = w->doubted[v] > most ? w->doubted[v] : most;
     least = count < least ? count : least;
     good += w->doubted[v] > 0 ? 0U : 1U;
@@ -406,7 +406,7 @@ static dea_status fill_panel(const struct work *w, size_t i, struct dea_panel *p
 {
   DEA_TRY(w->ctx, add_bands(w, i, panel));
   DEA_TRY(w->ctx, add_median(w, i, panel));
-  dea_figure_label(&w->case_key->quantities[i].shown, panel->y_label, sizeof panel->y_label);
+  dea_figure_label(&w->space->quantities[i].shown, panel->y_label, sizeof panel->y_label);
   dea_panel_voltage_axis(panel);
   dea_panel_place_key(panel);
   return DEA_OK;
@@ -417,10 +417,10 @@ static dea_status draw(const struct work *w)
 {
   struct dea_plot_folder list = {.ctx = w->ctx, .format = w->format, .path = w->folder};
   dea_status status = DEA_OK;
-  for (size_t i = 0; i < w->case_key->quantity_count && status == DEA_OK; i++) {
+  for (size_t i = 0; i < w->space->quantity_count && status == DEA_OK; i++) {
     struct dea_plot *plot;
     char name[64];
-    snprintf(name, sizeof name, "band_%.50s", w->case_key->quantities[i].key);
+    snprintf(name, sizeof name, "band_%.50s", w->space->quantities[i].key);
     status = dea_plot_create(w->ctx, name,
                              "median of the samples, and where 68 and 95 % of them lie", &plot);
     if (status == DEA_OK) {
@@ -440,31 +440,31 @@ static dea_status write_samples(struct work *w)
   DEA_TRY(w->ctx, dea_arena_status(&w->memory));
   for (size_t c = 0; c < independent(w); c++) {
     const struct dea_case *done = w->plan->cases[c];
-    for (size_t k = 0; k < w->case_key->voltage_count && done != NULL; k++) {
+    for (size_t k = 0; k < w->space->voltage_count && done != NULL; k++) {
       w->doubted[k] += dea_flags_have(done->marks[k], DEA_FLAG_DOUBT) ? 1U : 0U;
     }
   }
   DEA_TRY(w->ctx, write_statistics(w, values));
   DEA_TRY(w->ctx, write_limits(w));
-  if (w->case_key->file->plan.value == DEA_PLAN_INDICES) {
+  if (w->space->file->plan.value == DEA_PLAN_INDICES) {
     DEA_TRY(w->ctx, write_indices(w, values));
   }
-  return w->case_key->voltage_count > 1 ? draw(w) : DEA_OK;
+  return w->space->voltage_count > 1 ? draw(w) : DEA_OK;
 }
 
-dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,
+dea_status dea_sweep_write(const struct dea_design_space *space, const struct dea_plan *plan,
                            const struct dea_plot_format *format, const char *folder)
 {
-  struct work w = {.ctx = case_key->ctx,
-                   .case_key = case_key,
+  struct work w = {.ctx = space->ctx,
+                   .space = space,
                    .plan = plan,
                    .format = format,
                    .folder = folder,
-                   .memory = {.ctx = case_key->ctx},
-                   .params = case_key->variable_count,
-                   .values = case_key->evaluator.value_count};
+                   .memory = {.ctx = space->ctx},
+                   .params = space->variable_count,
+                   .values = space->evaluator.value_count};
   const bool samples =
-      case_key->file->plan.value > DEA_PLAN_SPARSE && case_key->file->objective_count == 0;
+      space->file->plan.value > DEA_PLAN_SPARSE && space->file->objective_count == 0;
   void *before = dea_c_locale_enter();
   dea_status status = write_cases(&w);
   status = status == DEA_OK && samples ? write_samples(&w) : status;

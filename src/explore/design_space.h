@@ -1,5 +1,5 @@
-/* What a file of dea sweep asks, resolved: the device as an evaluator, its variables and columns.
- */
+/* What a file of dea sweep or dea optimise asks, resolved: the device as an evaluator, its
+ * variables and what is kept of each design. */
 #pragma once
 
 #include "base/arena.h"
@@ -39,7 +39,7 @@ struct dea_limit {
   double above, below; // SI; NAN: none
 };
 
-struct dea_case_key {
+struct dea_design_space {
   struct dea_context *ctx;
   struct dea_explore_file *file;
   struct dea_design *design;
@@ -75,15 +75,16 @@ struct dea_case_key {
 
 /* Reads a file and resolves it. All that is wrong becomes findings, at its place, before anything
  * is computed; DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
-dea_status dea_case_key_read(struct dea_context *ctx, const char *file, struct dea_case_key **out);
-void dea_case_key_destroy(struct dea_case_key *case_key);
-/* Number of a quantity of the question by its key, or -1. */
-int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key);
+dea_status dea_design_space_read(struct dea_context *ctx, const char *file,
+                                 struct dea_design_space **out);
+void dea_design_space_destroy(struct dea_design_space *space);
+/* Number of a quantity of the space by its key, or -1. */
+int dea_design_space_quantity(const struct dea_design_space *space, const char *key);
 /* Whether a quantity is taken with the tip of compute.force held at its first depth. */
-bool dea_case_key_is_held(const struct dea_case_key *case_key, size_t quantity);
+bool dea_design_space_is_held(const struct dea_design_space *space, size_t quantity);
 /* A limit's margin at a case's last voltage, over its scale: below 0 it is crossed; NAN: no value.
  */
-double dea_limit_margin(const struct dea_case_key *case_key, const struct dea_limit *limit,
+double dea_limit_margin(const struct dea_design_space *space, const struct dea_limit *limit,
                         const double *q);
 /* Says that a name of the file is none of `what` [count], with the nearest of them. */
 dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *label,
@@ -93,11 +94,12 @@ dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *
  * from_fit. */
 dea_status dea_from_fit_read(struct dea_context *ctx, const struct dea_design *design,
                              const struct dea_device *device, struct dea_explore_file *io);
-/* The question's evaluator with gradients: at the last voltage, of quantities that an objective or
+/* The evaluator of a space with gradients: at the last voltage, of quantities that an objective or
  * a limit is of, by variables that are searched; NAN for all others, and where the model has none
  * at a design. The evaluator without gradients where the model has none of its own, or the file's
- * method wants none. user: lent by the question. */
-struct dea_evaluator dea_case_key_with_slopes(const struct dea_case_key *case_key);
+ * method wants none. user: lent by the space. */
+struct dea_evaluator dea_design_space_with_slopes(const struct dea_design_space *space);
 /* Adds these slopes to the case that is evaluated, of a model that stands at a stop. */
-dea_status dea_case_key_add_slopes(const struct dea_case_key *case_key, struct dea_model *model,
-                                   const struct dea_device *device, size_t stop);
+dea_status dea_design_space_add_slopes(const struct dea_design_space *space,
+                                       struct dea_model *model, const struct dea_device *device,
+                                       size_t stop);
