@@ -13,6 +13,7 @@
 struct dea_cli {
   struct dea_context *ctx;
   const struct dea_command *const *commands; // all of them in the order of the list, ended by NULL
+  const struct dea_command *command;         // that is asked for
   bool quiet;                                // --quiet: no progress, no notes
   bool verbose;                              // --verbose: with the chain of calls of an error
   bool help;                                 // --help: say how it is used, and do nothing
@@ -20,6 +21,7 @@ struct dea_cli {
   bool follower; // a rank of mpirun other than 0: computes along, says and writes nothing
   int ranks;     // that mpirun has started, this one among them
   bool colour;   // stderr takes colours (terminal, no NO_COLOR)
+  bool refused;  // a usage error has been printed
   const char *command_line; // the whole of it, for provenance
   struct {                  // for the progress that is shown
     char what[64];
@@ -40,10 +42,9 @@ struct dea_command {
   /* The struct that the options fill, and what it holds before; NULL: zeros. */
   size_t request_size;
   const void *defaults;
-  /* Whether what is asked for can be computed by several ranks of mpirun; NULL: none of it. */
-  bool (*on_ranks)(const void *request);
-  /* request: filled from the command line. Returns the exit code. */
-  int (*run)(struct dea_cli *cli, void *request);
+  bool on_ranks; // several ranks of mpirun can compute it
+  /* request: filled from the command line. What it returns is reported by who calls it. */
+  dea_status (*run)(struct dea_cli *cli, void *request);
 };
 
 // X(name of the `const struct dea_command`)
@@ -100,12 +101,15 @@ enum cli_kind {
 };
 
 struct cli_kind_info {
-  const char *name; // for "dea completion names NAME"; NULL: files
-  bool folder;      // folders only
-  bool few;         // help lists them too
-  dea_status (*list)(struct dea_cli *cli, struct dea_text *out); // a line each; NULL: nothing
+  const char *name;  // for "dea completion names NAME"; NULL: files
+  bool folder;       // folders only
+  bool few;          // help lists them too
+  const char *words; // a line each; NULL: what `list` adds, or nothing
+  dea_status (*list)(struct dea_cli *cli, struct dea_text *out);
 };
 extern const struct cli_kind_info cli_kinds[CLI_KINDS];
+dea_status cli_kind_list(struct dea_cli *cli, const struct cli_kind_info *kind,
+                         struct dea_text *out);
 
 /* A row of a command's table: an option, or without a name the argument (one row at most). */
 struct cli_option {
@@ -117,9 +121,9 @@ struct cli_option {
   /* Offset in the request of a bool (flag), a `const char *`, a struct cli_words (most above 1), or
    * of what `take` fills. */
   size_t target;
-  /* Reads the value in place of keeping it: 0, or the exit code after a usage error. */
-  int (*take)(struct dea_cli *cli, const struct dea_command *command,
-              const struct cli_option *option, const char *text, void *target);
+  /* Reads the value in place of keeping it. */
+  dea_status (*take)(struct dea_cli *cli, const struct cli_option *option, const char *text,
+                     void *target);
   size_t least, most;             // how many; most 0: one, of an option the last counts
   const char *too_few, *too_many; // what is said then
   bool or_before;                 // excludes the row before
@@ -143,23 +147,22 @@ struct cli_overrides {
 extern const struct cli_option cli_common_options[];
 /* Takes them out of argv, wherever they stand; returns the new argc. */
 int cli_parse_common(struct dea_cli *cli, int argc, char **argv);
-/* Reads a command line (argv[0] is the command's name) into its request: 0, or the exit code after
- * a usage error. What it keeps lends from argv. */
-int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, char **argv,
-              void *request);
+/* Reads a command line (argv[0] is the command's name) into the command's request. What it keeps
+ * lends from argv. */
+dea_status cli_parse(struct dea_cli *cli, int argc, char **argv, void *request);
 /* For `take`: "key=value" into a struct cli_overrides; a number with its unit into a double; "5%"
  * or "0.05", of 0 and more, into a double; "svg,pdf" and "85 mm" into a struct dea_plot_format. */
-int cli_parse_override(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target);
-int cli_parse_quantity(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target);
-int cli_parse_formats(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target);
-int cli_parse_width(struct dea_cli *cli, const struct dea_command *command,
-                    const struct cli_option *option, const char *text, void *target);
+dea_status cli_parse_override(struct dea_cli *cli, const struct cli_option *option,
+                              const char *text, void *target);
+dea_status cli_parse_quantity(struct dea_cli *cli, const struct cli_option *option,
+                              const char *text, void *target);
+dea_status cli_parse_formats(struct dea_cli *cli, const struct cli_option *option, const char *text,
+                             void *target);
+dea_status cli_parse_width(struct dea_cli *cli, const struct cli_option *option, const char *text,
+                           void *target);
 /* "4" into a double, and how many processes that are: without it, 0, one a core. */
-int cli_parse_processes(struct dea_cli *cli, const struct dea_command *command,
-                        const struct cli_option *option, const char *text, void *target);
+dea_status cli_parse_processes(struct dea_cli *cli, const struct cli_option *option,
+                               const char *text, void *target);
 size_t cli_processes(double given);
 /* "0.2" or "20%"; false otherwise. */
 bool cli_read_share(const char *text, double *share);
@@ -224,22 +227,25 @@ dea_status cli_print_manual(struct dea_cli *cli);
 /* Prints all findings, then the recorded failure, in the form "file:line:column: error: text";
  * returns the exit code of `status`. */
 int cli_report(struct dea_cli *cli, dea_status status);
-/* Prints "dea COMMAND: text" and a hint to --help; returns the exit code of a usage error. */
-int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, const char *format, ...)
-    DEA_PRINTF(3, 4);
-/* Reads a design, builds its device, hands both to `work` with a request, and reports; returns the
- * exit code. */
+/* Prints "dea COMMAND: text" and a hint to --help; returns DEA_E_USAGE. */
+dea_status cli_usage_error(struct dea_cli *cli, const char *format, ...) DEA_PRINTF(2, 3);
+/* Reads a design, builds its device, and hands both to `work` with a request. */
 typedef dea_status cli_device_work(struct dea_cli *cli, const void *request,
                                    const struct dea_design *design,
                                    const struct dea_device *device);
-int cli_with_device(struct dea_cli *cli, const char *file, const struct cli_overrides *overrides,
-                    cli_device_work *work, const void *request);
-/* Where the results of a file go: `given`, or where that is NULL the file's name without ending,
- * plus ".ENDING", in the current folder, which `made` holds. NULL: no memory. */
-const char *cli_output_name(const char *given, const char *file, const char *outcome,
-                            struct dea_text *made);
+dea_status cli_with_device(struct dea_cli *cli, const char *file,
+                           const struct cli_overrides *overrides, cli_device_work *work,
+                           const void *request);
+/* Takes a text; *out is lent as long as the context. DEA_E_MEMORY where it is not whole. */
+dea_status cli_keep_text(struct dea_text *text, const char **out);
+/* Where the results of a file go: *name as given, or where that is NULL the file's name without
+ * ending, plus ".ENDING", in the current folder; lent as long as the context. */
+dea_status cli_output_name(struct dea_cli *cli, const char *file, const char *ending,
+                           const char **name);
 /* All findings so far as an array; owned by the caller. */
 json_t *cli_findings_json(const struct dea_context *ctx);
+/* The row of a command's argument, or the last one, without help. */
+const struct cli_option *cli_argument_of(const struct dea_command *command);
 /* What a file says of itself, cut where it is long, without signs that would begin a line of their
  * own, such as one that says what the output was, or change the terminal. */
 enum { CLI_PLAIN_SIZE = 512 };
@@ -262,7 +268,7 @@ void cli_voltage_is_on(void);
 
 struct cli_data_file {
   char *path; // to open
-  char *name; // inside the folder of examples, with "/" between: "paper/fig02.yaml"
+  char *name; // its end inside the folder of examples, with "/" between: "paper/fig02.yaml"
 };
 
 /* In the order of their names; those of one level of folders come after the others. */
@@ -274,7 +280,7 @@ struct cli_data_list {
 
 /* Files whose name ends in `ending` ("" for all), of the installed examples, or if there are none
  * of those in the source tree. list: to be freed in any case. */
-dea_status cli_examples_find(struct dea_context *ctx, const char *outcome,
+dea_status cli_examples_find(struct dea_context *ctx, const char *ending,
                              struct cli_data_list *list);
 void cli_data_free(struct dea_context *ctx, struct cli_data_list *list);
 /* Length of a name without its last ending: 5 for "fig02.yaml". */

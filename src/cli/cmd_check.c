@@ -318,9 +318,7 @@ static dea_status write_drawing(struct dea_cli *cli, const char *file,
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a design without errors has its device
   const struct dea_device_drawing drawing = {.layout = device->layout};
   dea_status status = dea_device_drawing_add_svg(&drawing, 1, &out);
-  if (status == DEA_OK) {
-    status = dea_file_write(cli->ctx, file, dea_text_get(&out), out.length);
-  }
+  status = status == DEA_OK ? dea_text_write_path(cli->ctx, &out, file) : status;
   dea_text_free(&out);
   return status;
 }
@@ -339,7 +337,7 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
   return status == DEA_OK ? dea_study_warn(ctx, design, *device) : status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_design *design = NULL;
@@ -354,12 +352,10 @@ static int run(struct dea_cli *cli, void *user)
     print_json(cli, request, design, device);
   } else if (status == DEA_OK) {
     status = print_text(cli->ctx, design, device, request->all);
-    fflush(stdout);
   }
-  int code = cli_report(cli, status);
   dea_device_destroy(cli->ctx, device);
   dea_design_destroy(cli->ctx, design);
-  return code;
+  return status;
 }
 
 static const struct cli_option options[] = {

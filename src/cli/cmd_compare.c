@@ -36,19 +36,19 @@ struct side {
 // Command line -----------------------------------------------------------------------------------
 
 /* "5%" or "0.05". */
-static int parse_tolerance(struct dea_cli *cli, const struct dea_command *command,
-                           const struct cli_option *option, const char *text, void *target)
+static dea_status parse_tolerance(struct dea_cli *cli, const struct cli_option *option,
+                                  const char *text, void *target)
 {
   double *tolerance = target;
   (void)option;
   return cli_read_share(text, tolerance) && *tolerance >= 0.0
-             ? 0
-             : cli_usage_error(cli, command, "'%s' is not a tolerance such as 5%%", text);
+             ? DEA_OK
+             : cli_usage_error(cli, "'%s' is not a tolerance such as 5%%", text);
 }
 
 /* "lumped" or "lumped:axisymmetric". */
-static int parse_models(struct dea_cli *cli, const struct dea_command *command,
-                        const struct cli_option *option, const char *text, void *target)
+static dea_status parse_models(struct dea_cli *cli, const struct cli_option *option,
+                               const char *text, void *target)
 {
   struct models *models = target;
   size_t n = strcspn(text, ":");
@@ -57,11 +57,11 @@ static int parse_models(struct dea_cli *cli, const struct dea_command *command,
   (void)option;
   if (models->count == DEA_DESIGN_MODELS_MAX || n == 0 || m == 0 || n >= DEA_NAME_SIZE ||
       m >= DEA_NAME_SIZE || second[m] != '\0') {
-    return cli_usage_error(cli, command, "'%s' names no model", text);
+    return cli_usage_error(cli, "'%s' names no model", text);
   }
   memcpy(models->at[models->count][0], text, n);
   memcpy(models->at[models->count++][1], second, m);
-  return 0;
+  return DEA_OK;
 }
 
 /* Says of which quantities there are, or which of them is near. */
@@ -141,24 +141,8 @@ static void side_name(const struct request *request, size_t side, char *out)
   snprintf(out, DEA_LABEL_SIZE, "%.60s", alone ? own : path);
 }
 
-/* Models of a run that are to be compared; names lent. */
-static size_t models_of(const struct request *request, const struct dea_run *run,
-                        const char *models[DEA_DESIGN_MODELS_MAX])
-{
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a side is a run or a table
-  size_t count = dea_result_models(run->result, models, DEA_DESIGN_MODELS_MAX), kept = 0;
-  for (size_t m = 0; m < count && request->models.count > 0; m++) {
-    for (size_t k = 0; k < request->models.count; k++) {
-      if (strcmp(models[m], request->models.at[k][0]) == 0) {
-        models[kept++] = models[m];
-        break;
-      }
-    }
-  }
-  return request->models.count > 0 ? kept : count;
-}
-
-/* Model of the reference that was asked for beside this one, "" for none. */
+/* Model of the reference that is asked for beside this one, "" where none is asked for; NULL:
+ * others are. */
 static const char *reference_model(const struct request *request, const char *model)
 {
   for (size_t k = 0; k < request->models.count; k++) {
@@ -166,7 +150,21 @@ static const char *reference_model(const struct request *request, const char *mo
       return request->models.at[k][1];
     }
   }
-  return "";
+  return request->models.count > 0 ? NULL : "";
+}
+
+/* Models of a run that are to be compared; names lent. */
+static size_t models_of(const struct request *request, const struct dea_run *run,
+                        const char *models[DEA_DESIGN_MODELS_MAX])
+{
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a side is a run or a table
+  size_t count = dea_result_models(run->result, models, DEA_DESIGN_MODELS_MAX), kept = 0;
+  for (size_t m = 0; m < count; m++) {
+    if (reference_model(request, models[m]) != NULL) {
+      models[kept++] = models[m];
+    }
+  }
+  return kept;
 }
 
 /* Adds the models of one run; they are called by what tells them apart. */
@@ -259,29 +257,6 @@ static dea_status fill_set(struct dea_context *ctx, const struct request *reques
 
 // What is printed ---------------------------------------------------------------------------------
 
-/* Title of a table and of the place of the largest difference. */
-static void print_head(const char *title, const char *at, bool std)
-{
-  printf("\n%-28s %6s %11s %11s %8s %11s %10s %13s", title, "points", "RMS", "largest", at, "bias",
-         "RMS/range", "largest/range");
-  printf(std ? " %11s %8s %8s\n" : "\n", "chi2/point", "in 1 std", "in 2 std");
-}
-
-static void print_row(const char *name, const struct dea_misfit *m, double at_factor,
-                      double tolerance)
-{
-  double factor = m->quantity->factor;
-  printf("  %-26s %6zu %11.5g %11.5g %8.4g %11.5g %8.3g %% %11.3g %%", name, m->count,
-         factor * m->rms, factor * m->largest, at_factor * m->largest_at, factor * m->bias,
-         100.0 * m->relative_rms, 100.0 * m->relative_largest);
-  if (m->std_count > 0) {
-    printf(" %11.4g %6.0f %% %6.0f %%", m->chi_square, 100.0 * m->within_1_std,
-           100.0 * m->within_2_std);
-  }
-  printf("%s\n",
-         !isnan(tolerance) && !(m->relative_largest <= tolerance) ? "  out of tolerance" : "");
-}
-
 /* What a table of misfits is of: a pair, a quantity, a profile, or a column of a history. */
 static size_t group_of(const struct dea_compare_set *set, const struct dea_set_misfit *m)
 {
@@ -305,21 +280,33 @@ static void print_group_head(const struct dea_compare_set *set, const struct dea
     printf("a: %s\nb: %s", set->curves[m->curve].name, beside);
     snprintf(text, sizeof text, "a - b");
   }
-  print_head(text, places[m->kind], std);
+  printf("\n%-28s %6s %11s %11s %8s %11s %10s %13s", text, "points", "RMS", "largest",
+         places[m->kind], "bias", "RMS/range", "largest/range");
+  printf(std ? " %11s %8s %8s\n" : "\n", "chi2/point", "in 1 std", "in 2 std");
 }
 
-static void print_group_row(const struct dea_compare_set *set, const struct dea_set_misfit *m,
+static void print_group_row(const struct dea_compare_set *set, const struct dea_set_misfit *of,
                             double tolerance)
 {
-  static const double factors[] = {1e-3, 1e3, 1};
-  char text[DEA_COLUMN_TITLE_SIZE + DEA_LABEL_SIZE];
-  if (m->kind == DEA_SET_VOLTAGE && set->pairs) {
-    dea_column_title(m->misfit.quantity, text, sizeof text);
+  static const double factors[] = {1e-3, 1e3, 1}; // of the place
+  const struct dea_misfit *m = &of->misfit;
+  const double factor = m->quantity->factor;
+  char name[DEA_COLUMN_TITLE_SIZE + DEA_LABEL_SIZE];
+  if (of->kind == DEA_SET_VOLTAGE && set->pairs) {
+    dea_column_title(m->quantity, name, sizeof name);
   } else {
-    snprintf(text, sizeof text, "%s%s%s", set->curves[m->curve].name, m->line.directed ? ", " : "",
-             m->line.directed ? dea_half_names[m->half] : "");
+    snprintf(name, sizeof name, "%s%s%s", set->curves[of->curve].name,
+             of->line.directed ? ", " : "", of->line.directed ? dea_half_names[of->half] : "");
   }
-  print_row(text, &m->misfit, factors[m->kind], tolerance);
+  printf("  %-26s %6zu %11.5g %11.5g %8.4g %11.5g %8.3g %% %11.3g %%", name, m->count,
+         factor * m->rms, factor * m->largest, factors[of->kind] * m->largest_at, factor * m->bias,
+         100.0 * m->relative_rms, 100.0 * m->relative_largest);
+  if (m->std_count > 0) {
+    printf(" %11.4g %6.0f %% %6.0f %%", m->chi_square, 100.0 * m->within_1_std,
+           100.0 * m->within_2_std);
+  }
+  printf("%s\n",
+         !isnan(tolerance) && !(m->relative_largest <= tolerance) ? "  out of tolerance" : "");
 }
 
 /* The tables of a kind; true when some misfit has uncertainties. */
@@ -428,7 +415,7 @@ static dea_status compare(struct dea_context *ctx, const struct request *request
   return judge(ctx, set, request->tolerance);
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_context *ctx = cli->ctx;
@@ -442,13 +429,12 @@ static int run(struct dea_cli *cli, void *user)
     set.reference_result = sides[last].run != NULL ? sides[last].run->result : NULL;
     status = compare(ctx, request, sides, &set);
   }
-  int code = cli_report(cli, status);
   dea_arena_free(&set.memory);
   for (size_t i = 0; i <= last; i++) {
     dea_run_destroy(ctx, sides[i].run);
     dea_measured_destroy(ctx, sides[i].measured);
   }
-  return code;
+  return status;
 }
 
 static const struct request defaults = {.tolerance = NAN,

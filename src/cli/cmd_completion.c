@@ -7,16 +7,6 @@ struct request {
   struct cli_words words;
 };
 
-/* The row of a command's argument, or the last one, without help. */
-static const struct cli_option *argument_of(const struct dea_command *command)
-{
-  const struct cli_option *option = command->options;
-  while (option->help != NULL && option->name != NULL) {
-    option++;
-  }
-  return option;
-}
-
 static void print_bash_candidates(const struct cli_kind_info *kind)
 {
   if (kind->name != NULL) {
@@ -28,7 +18,7 @@ static void print_bash_candidates(const struct cli_kind_info *kind)
 
 static void print_bash_command(const struct dea_command *command)
 {
-  const struct cli_option *argument = argument_of(command);
+  const struct cli_option *argument = cli_argument_of(command);
   const struct cli_option *const tables[] = {command->options, cli_common_options};
   printf("    %s)\n      options='", command->name);
   for (size_t k = 0; k < 2; k++) {
@@ -82,29 +72,28 @@ static dea_status print_names(struct dea_cli *cli, const char *what)
   struct dea_text out = {.ctx = cli->ctx};
   dea_status status = DEA_OK;
   for (size_t i = 0; i < CLI_KINDS; i++) {
-    if (cli_kinds[i].list != NULL && strcmp(cli_kinds[i].name, what) == 0) {
-      status = cli_kinds[i].list(cli, &out);
+    if (cli_kinds[i].name != NULL && strcmp(cli_kinds[i].name, what) == 0) {
+      status = cli_kind_list(cli, &cli_kinds[i], &out);
     }
   }
   return cli_print_text(status, &out);
 }
 
-static int run(struct dea_cli *cli, void *request)
+static dea_status run(struct dea_cli *cli, void *request)
 {
   const struct cli_words *words = &((const struct request *)request)->words;
   const char *what = words->at[0];
   if (words->count == 2 && strcmp(what, "names") == 0) { // for the completion itself
-    return cli_report(cli, print_names(cli, words->at[1]));
+    return print_names(cli, words->at[1]);
   }
   if (words->count == 1 && strcmp(what, "man") == 0) {
-    return cli_report(cli, cli_print_manual(cli));
+    return cli_print_manual(cli);
   }
   if (words->count == 1 && strcmp(what, "bash") == 0) {
     print_bash(cli);
-    return 0;
+    return DEA_OK;
   }
-  return cli_usage_error(cli, &cmd_completion, "'%s' is not a shell that is known here (bash)",
-                         what);
+  return cli_usage_error(cli, "'%s' is not a shell that is known here (bash)", what);
 }
 
 static const struct cli_option options[] = {

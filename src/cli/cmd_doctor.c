@@ -1,4 +1,5 @@
-#define _GNU_SOURCE // popen, access
+#define _POSIX_C_SOURCE 200809L // access, getcwd
+#include "base/program.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/bench.h"
@@ -10,66 +11,44 @@
 #include "result/provenance.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <string.h>
 #include <udunits2.h>
 #include <unistd.h>
 
-enum { OUTPUT_SIZE = 8192 };
-
-/* What was found out so far. */
-struct report {
-  bool usable; // false: a command that computes would fail
-};
-
-enum importance { NEEDED, WISHED };
-
-/* One line; advice: what to do when it is not ok, may be NULL. */
-static void print_row(struct report *report, enum importance importance, bool ok, const char *what,
-                      const char *found, const char *advice)
+/* One line; advice: what to do when it is not ok. Whether it is. */
+static bool print_row(bool ok, const char *what, const char *found, const char *advice)
 {
   printf("%-8s %-22s %s\n", ok ? "ok" : "missing", what, found);
-  if (!ok && advice != NULL) {
+  if (!ok) {
     printf("%-8s %-22s -> %s\n", "", "", advice);
   }
-  if (!ok && importance == NEEDED) {
-    report->usable = false;
-  }
+  return ok;
 }
 
-static void check_libraries(struct report *report)
-{
-  char text[256];
-  dea_libraries_text(text, sizeof text);
-  print_row(report, NEEDED, true, "libraries", text, NULL);
-}
-
-static void check_units(struct report *report)
+static bool check_units(void)
 {
   ut_set_error_message_handler(ut_ignore);
   ut_system *units = ut_read_xml(NULL);
   ut_unit *unit = units != NULL ? ut_parse(units, "kPa", UT_ASCII) : NULL;
   bool ok = unit != NULL;
-  print_row(report, NEEDED, ok, "units",
-            ok ? "udunits database" : "the udunits database cannot be read",
-            "install libudunits2-data, or set UDUNITS2_XML_PATH to udunits2.xml");
   ut_free(unit);
   ut_free_system(units);
+  return print_row(ok, "units", ok ? "udunits database" : "the udunits database cannot be read",
+                   "install libudunits2-data, or set UDUNITS2_XML_PATH to udunits2.xml");
 }
 
 /* Line "N in FOLDER", and what to do if there are none. */
-static void print_data(struct dea_context *ctx, struct report *report, enum importance importance,
-                       const char *what, size_t count, const char *folder)
+static bool print_data(const char *what, size_t count, int length, const char *folder)
 {
-  struct dea_text text = {.ctx = ctx};
-  dea_text_add(&text, "%zu in %s", count, folder);
-  print_row(report, importance, count > 0, what,
-            count > 0 ? dea_text_get(&text) : "none were found",
-            "install the program again: its data files are not where they should be");
-  dea_text_free(&text);
+  char text[4096 + 128];
+  snprintf(text, sizeof text, "%zu in %.*s", count, length, folder);
+  return print_row(count > 0, what, count > 0 ? text : "none were found",
+                   "install the program again: its data files are not where they should be");
 }
 
 /* All materials must be readable; the folder is that of the first. */
-static dea_status check_materials(struct dea_context *ctx, struct report *report)
+static dea_status check_materials(struct dea_context *ctx, bool *usable)
 {
   const struct dea_location nowhere = {.file = ""};
   const char **names;
@@ -88,54 +67,45 @@ static dea_status check_materials(struct dea_context *ctx, struct report *report
   dea_free(ctx, names);
   if (status == DEA_OK) {
     const char *slash = strrchr(folder, '/');
-    char *directory = dea_copy_text(ctx, folder, slash != NULL ? (size_t)(slash - folder) : 0);
-    print_data(ctx, report, NEEDED, "materials", count, directory != NULL ? directory : folder);
-    dea_free(ctx, directory);
+    *usable = print_data("materials", count, slash != NULL ? (int)(slash - folder) : 0, folder);
   }
   return status;
 }
 
-static dea_status check_examples(struct dea_context *ctx, struct report *report)
+static dea_status check_examples(struct dea_context *ctx)
 {
   struct cli_data_list list;
   dea_status status = cli_examples_find(ctx, ".yaml", &list);
   if (status == DEA_OK) {
-    print_data(ctx, report, WISHED, "examples", list.count, list.folder);
+    print_data("examples", list.count, INT_MAX, list.folder);
   }
   cli_data_free(ctx, &list);
   return status;
 }
 
-/* Runs a command line and keeps what it prints; false when it fails. */
-static bool capture(const char *command, char output[OUTPUT_SIZE])
+/* Runs gnuplot and keeps what it prints; false when it fails. */
+static bool run_gnuplot(const struct dea_context *ctx, char *option, char *value,
+                        char said[DEA_PROGRAM_SAID])
 {
-  output[0] = '\0';
-  // NOLINTNEXTLINE(cert-env33-c): commands of this file, nothing of the user
-  FILE *pipe = popen(command, "r");
-  if (pipe == NULL) {
-    return false;
-  }
-  size_t n = fread(output, 1, OUTPUT_SIZE - 1, pipe);
-  output[n] = '\0';
-  char rest[512];
-  while (fread(rest, 1, sizeof rest, pipe) > 0) {
-    // read to the end, or the command would die of a closed pipe
-  }
-  return pclose(pipe) == 0;
+  static const double limit_s = 60;
+  struct dea_program program;
+  int number;
+  char *const argv[] = {(char *)"gnuplot", option, value, NULL};
+  said[0] = '\0';
+  return dea_program_start(argv, ".", true, &program) == 0 &&
+         dea_program_wait(ctx, &program, limit_s, said, &number) == DEA_PROGRAM_DONE;
 }
 
 /* Draws a line with a terminal: that it is listed does not mean that its fonts are there. */
-static void check_terminal(struct report *report, const char *terminal)
+static void check_terminal(const struct dea_context *ctx, const char *terminal)
 {
-  char command[256], output[OUTPUT_SIZE];
+  char command[256], output[DEA_PROGRAM_SAID], what[64];
   snprintf(command, sizeof command,
-           "gnuplot -e \"set terminal %s; set output '/dev/null'; set title 'E'; plot x\" 2>&1",
-           terminal);
-  bool ok = capture(command, output) && output[0] == '\0';
+           "set terminal %s; set output '/dev/null'; set title 'E'; plot x", terminal);
+  bool ok = run_gnuplot(ctx, (char *)"-e", command, output) && output[0] == '\0';
   output[strcspn(output, "\n")] = '\0';
-  char what[64];
   snprintf(what, sizeof what, "figures as %s", terminal);
-  print_row(report, WISHED, ok, what, ok ? "drawn" : output,
+  print_row(ok, what, ok ? "drawn" : output,
             "install gnuplot-nox and a font "
             "(fonts-dejavu-core)");
 }
@@ -157,7 +127,7 @@ static const struct module {
 };
 
 /* A module is of this build where its packages were there when that was configured. */
-static void check_module(struct report *report, const struct module *module)
+static void check_module(const struct module *module)
 {
   char advice[400], path[4096];
   const bool of_build = strstr(DEA_MODULES_OF_BUILD, module->file) != NULL;
@@ -171,28 +141,24 @@ static void check_module(struct report *report, const struct module *module)
     snprintf(advice, sizeof advice, "install %s, and build again; without it %s", module->packages,
              module->without);
   }
-  print_row(report, WISHED, ok, module->what,
-            ok         ? path
-            : of_build ? "not found"
-                       : "not built",
-            advice);
+  print_row(ok, module->what, ok ? path : of_build ? "not found" : "not built", advice);
 }
 
-static void check_gnuplot(struct report *report)
+static void check_gnuplot(const struct dea_context *ctx)
 {
-  char output[OUTPUT_SIZE];
-  bool ok = capture("gnuplot --version 2>/dev/null", output);
+  char output[DEA_PROGRAM_SAID];
+  const bool ok = run_gnuplot(ctx, (char *)"--version", NULL, output);
   output[strcspn(output, "\n")] = '\0';
-  print_row(report, WISHED, ok, "gnuplot", ok ? output : "not found on the PATH",
+  print_row(ok, "gnuplot", ok ? output : "not found on the PATH",
             "install gnuplot-nox; without it a run writes data and no figures");
   if (ok) {
-    check_terminal(report, "svg");
-    check_terminal(report, "pdfcairo");
-    check_terminal(report, "pngcairo");
+    check_terminal(ctx, "svg");
+    check_terminal(ctx, "pdfcairo");
+    check_terminal(ctx, "pngcairo");
   }
 }
 
-static void check_folder(struct report *report)
+static void check_folder(void)
 {
   char text[4096 + 128], folder[4096];
   if (getcwd(folder, sizeof folder) == NULL) {
@@ -200,28 +166,28 @@ static void check_folder(struct report *report)
   }
   bool ok = access(".", W_OK) == 0;
   snprintf(text, sizeof text, "%s%s%s", folder, ok ? "" : ": ", ok ? "" : strerror(errno));
-  print_row(report, WISHED, ok, "folder to write in", text, "go to another folder, or use -o DIR");
+  print_row(ok, "folder to write in", text, "go to another folder, or use -o DIR");
 }
 
-static int run(struct dea_cli *cli, void *request)
+static dea_status run(struct dea_cli *cli, void *request)
 {
   (void)request;
-  struct report report = {.usable = true};
-  print_row(&report, NEEDED, true, "dea",
-            DEA_VERSION ", built by " DEA_COMPILER " as " DEA_BUILD_TYPE, NULL);
-  check_libraries(&report);
-  check_units(&report);
-  dea_status status = check_materials(cli->ctx, &report);
-  status = status == DEA_OK ? check_examples(cli->ctx, &report) : status;
-  check_gnuplot(&report);
+  char libraries[256];
+  bool materials = true;
+  dea_libraries_text(libraries, sizeof libraries);
+  print_row(true, "dea", DEA_VERSION ", built by " DEA_COMPILER " as " DEA_BUILD_TYPE, "");
+  print_row(true, "libraries", libraries, "");
+  const bool units = check_units();
+  dea_status status = check_materials(cli->ctx, &materials);
+  status = status == DEA_OK ? check_examples(cli->ctx) : status;
+  check_gnuplot(cli->ctx);
   for (size_t i = 0; i < sizeof modules / sizeof modules[0]; i++) {
-    check_module(&report, &modules[i]);
+    check_module(&modules[i]);
   }
-  check_folder(&report);
-  if (status == DEA_OK && !report.usable) {
-    status = dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing");
-  }
-  return cli_report(cli, status);
+  check_folder();
+  return status == DEA_OK && !(units && materials)
+             ? dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing")
+             : status;
 }
 
 static const struct cli_option options[] = {{0}};

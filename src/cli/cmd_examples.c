@@ -1,4 +1,4 @@
-#define _POSIX_C_SOURCE 200809L // stat
+#define _GNU_SOURCE // GLOB_BRACE
 #include "base/file.h"
 #include "base/write_file.h"
 #include "base/yaml.h"
@@ -6,7 +6,6 @@
 
 #include <glob.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { EXAMPLE_SIZE_MAX = 1 << 26 };
 
@@ -15,33 +14,7 @@ struct request {
   bool force;
 };
 
-static bool is_regular(const char *path)
-{
-  struct stat info;
-  return stat(path, &info) == 0 && S_ISREG(info.st_mode);
-}
-
-static bool ends_in(const char *text, const char *outcome)
-{
-  size_t n = strlen(text), m = strlen(outcome);
-  return n >= m && strcmp(text + n - m, outcome) == 0;
-}
-
-/* Adds what is in `folder` to *found; the folder's own name is taken literally. */
-static dea_status glob_folder(struct dea_context *ctx, const char *folder, const char *pattern,
-                              int flags, glob_t *found)
-{
-  struct dea_text text = {.ctx = ctx};
-  for (const char *p = folder; *p != '\0'; p++) {
-    dea_text_add(&text, "%s%c", strchr("*?[\\", *p) != NULL ? "\\" : "", *p);
-  }
-  dea_text_add(&text, "%s", pattern);
-  int code = text.failed ? GLOB_NOSPACE : glob(dea_text_get(&text), flags, NULL, found);
-  dea_text_free(&text);
-  return code == GLOB_NOSPACE ? dea_fail(ctx, DEA_E_MEMORY, "out of memory") : DEA_OK;
-}
-
-static dea_status read_files(struct dea_context *ctx, const char *folder, const char *outcome,
+static dea_status read_files(struct dea_context *ctx, const char *folder, const char *ending,
                              const glob_t *found, struct cli_data_list *list)
 {
   list->folder = dea_copy_text(ctx, folder, strlen(folder));
@@ -49,34 +22,38 @@ static dea_status read_files(struct dea_context *ctx, const char *folder, const 
   DEA_TRY_MEMORY(list->folder != NULL && list->files != NULL);
   for (size_t i = 0; i < found->gl_pathc; i++) {
     const char *path = found->gl_pathv[i];
-    if (!ends_in(path, outcome) || !is_regular(path)) {
+    if (!dea_text_ends_with(path, ending) || dea_path_is_folder(path)) {
       continue;
     }
     struct cli_data_file *file = &list->files[list->count];
-    const char *name = path + strlen(folder) + 1;
     file->path = dea_copy_text(ctx, path, strlen(path));
-    file->name = dea_copy_text(ctx, name, strlen(name));
+    DEA_TRY_MEMORY(file->path != NULL);
+    file->name = file->path + strlen(folder) + 1;
     list->count++;
-    DEA_TRY_MEMORY(file->path != NULL && file->name != NULL);
   }
   return DEA_OK;
 }
 
-static dea_status find_in(struct dea_context *ctx, const char *folder, const char *outcome,
+/* Files of a folder, whose own name is taken literally, and of two levels below it
+ * (fit/silicone/uniaxial.csv). */
+static dea_status find_in(struct dea_context *ctx, const char *folder, const char *ending,
                           struct cli_data_list *list)
 {
   glob_t found = {.gl_pathc = 0};
-  dea_status status = glob_folder(ctx, folder, "/*", 0, &found);
-  static const char *const deeper[] = {"/*/*", "/*/*/*"}; // fit/silicone/uniaxial.csv
-  for (size_t i = 0; i < sizeof deeper / sizeof deeper[0] && status == DEA_OK; i++) {
-    status = glob_folder(ctx, folder, deeper[i], GLOB_APPEND, &found);
+  struct dea_text pattern = {.ctx = ctx};
+  for (const char *p = folder; *p != '\0'; p++) {
+    dea_text_add(&pattern, "%s%c", strchr("*?[\\{,}", *p) != NULL ? "\\" : "", *p);
   }
-  status = status == DEA_OK ? read_files(ctx, folder, outcome, &found, list) : status;
+  dea_text_add(&pattern, "/{*,*/*,*/*/*}");
+  const bool failed =
+      pattern.failed || glob(dea_text_get(&pattern), GLOB_BRACE, NULL, &found) == GLOB_NOSPACE;
+  dea_text_free(&pattern);
+  const dea_status status = failed ? DEA_E_MEMORY : read_files(ctx, folder, ending, &found, list);
   globfree(&found);
   return status;
 }
 
-dea_status cli_examples_find(struct dea_context *ctx, const char *outcome,
+dea_status cli_examples_find(struct dea_context *ctx, const char *ending,
                              struct cli_data_list *list)
 {
   static const char *const places[] = {DEA_INSTALL_DATA_DIR "/examples",
@@ -84,7 +61,7 @@ dea_status cli_examples_find(struct dea_context *ctx, const char *outcome,
   *list = (struct cli_data_list){.count = 0};
   for (size_t i = 0; i < 2 && list->count == 0; i++) {
     cli_data_free(ctx, list);
-    DEA_TRY(ctx, find_in(ctx, places[i], outcome, list));
+    DEA_TRY(ctx, find_in(ctx, places[i], ending, list));
   }
   return DEA_OK;
 }
@@ -93,7 +70,6 @@ void cli_data_free(struct dea_context *ctx, struct cli_data_list *list)
 {
   for (size_t i = 0; i < list->count; i++) {
     dea_free(ctx, list->files[i].path);
-    dea_free(ctx, list->files[i].name);
   }
   dea_free(ctx, list->files);
   dea_free(ctx, list->folder);
@@ -138,10 +114,7 @@ static dea_status list_examples(struct dea_cli *cli, const struct cli_data_list 
 /* File that a name means: "paper/fig02", "fig02" or either with ".yaml"; NULL when none. */
 static const struct cli_data_file *find_example(const struct cli_data_list *list, const char *name)
 {
-  size_t length = strlen(name);
-  if (length > 5 && strcmp(name + length - 5, ".yaml") == 0) {
-    length -= 5;
-  }
+  const size_t length = strlen(name) - (dea_text_ends_with(name, ".yaml") ? strlen(".yaml") : 0);
   for (size_t i = 0; i < list->count; i++) {
     const char *whole = list->files[i].name, *last = dea_path_name(whole);
     if ((cli_data_stem(whole) == length && strncmp(whole, name, length) == 0) ||
@@ -229,17 +202,17 @@ static dea_status show(struct dea_cli *cli, const char *name)
   return status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   if (request->folder != NULL && request->folder[0] == '\0') {
-    return cli_usage_error(cli, &cmd_examples, "--copy needs a folder");
+    return cli_usage_error(cli, "--copy needs a folder");
   }
   if (request->folder != NULL && request->name != NULL) {
-    return cli_usage_error(cli, &cmd_examples, "'%s' is one argument too many", request->name);
+    return cli_usage_error(cli, "'%s' is one argument too many", request->name);
   }
-  return cli_report(cli, request->folder != NULL ? copy_all(cli, request->folder, request->force)
-                                                 : show(cli, request->name));
+  return request->folder != NULL ? copy_all(cli, request->folder, request->force)
+                                 : show(cli, request->name);
 }
 
 static const struct cli_option options[] = {

@@ -30,7 +30,7 @@ static json_t *amounts_json(const struct dea_workshop *w)
 
 /* Sizes of the finished parts, and what was written where. */
 static void print_json(const struct dea_workshop *w, const struct request *request,
-                       const struct dea_workshop_options *options, const char *directory)
+                       const struct dea_workshop_options *options)
 {
   json_t *parts = json_array(), *files = json_array();
   for (size_t i = 0; i < w->count; i++) {
@@ -51,7 +51,7 @@ static void print_json(const struct dea_workshop *w, const struct request *reque
   }
   json_t *json = json_object();
   dea_json_add_text(json, "design", request->design);
-  dea_json_add_text(json, "folder", directory);
+  dea_json_add_text(json, "folder", request->output);
   json_object_set_new(json, "copies", json_integer(w->plan.copies));
   dea_json_add(json, "kerf_m", w->plan.kerf_m);
   json_object_set_new(json, "parts", parts);
@@ -63,20 +63,15 @@ static void print_json(const struct dea_workshop *w, const struct request *reque
 static dea_status write_files(struct dea_cli *cli, const struct request *request,
                               const struct dea_workshop *workshop)
 {
-  struct dea_text name = {.ctx = cli->ctx};
   const struct dea_workshop_options options = {request->force, request->drawing};
-  const char *directory = cli_output_name(request->output, request->design, "fab", &name);
-  dea_status status = directory == NULL
-                          ? DEA_E_MEMORY
-                          : dea_workshop_prepare(cli->ctx, workshop, directory, &options);
-  status = status == DEA_OK ? dea_workshop_write(cli->ctx, workshop, directory, &options) : status;
-  if (status == DEA_OK && request->json) {
-    print_json(workshop, request, &options, directory);
-  } else if (status == DEA_OK && !cli->quiet) {
-    fprintf(stderr, "files for the workshop are in %s\n", directory);
+  DEA_TRY(cli->ctx, dea_workshop_prepare(cli->ctx, workshop, request->output, &options));
+  DEA_TRY(cli->ctx, dea_workshop_write(cli->ctx, workshop, request->output, &options));
+  if (request->json) {
+    print_json(workshop, request, &options);
+  } else if (!cli->quiet) {
+    fprintf(stderr, "files for the workshop are in %s\n", request->output);
   }
-  dea_text_free(&name);
-  return status;
+  return DEA_OK;
 }
 
 static dea_status build(struct dea_cli *cli, const void *request, const struct dea_design *design,
@@ -89,9 +84,10 @@ static dea_status build(struct dea_cli *cli, const void *request, const struct d
   return status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
-  const struct request *request = user;
+  struct request *request = user;
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->design, "fab", &request->output));
   return cli_with_device(cli, request->design, &request->overrides, build, request);
 }
 

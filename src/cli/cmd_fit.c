@@ -262,6 +262,19 @@ static void print_device_fit(const struct dea_device_fit *fit)
   print_next(&fit->core, "measurement");
 }
 
+/* A parameter of Weibull's law. */
+static void print_weibull(const struct dea_weibull_fit *fit, size_t k, const char *name,
+                          const struct shown *shown, bool fixed)
+{
+  const struct dea_fit_value value = {.value = fit->value[k],
+                                      .std = fit->std[k],
+                                      .low = fit->low[k],
+                                      .high = fit->high[k],
+                                      .fixed = fixed};
+  printf("  %-20s %10.6g", name, shown->factor * value.value);
+  print_known(&value, shown, 3, "", false);
+}
+
 /* When so many have failed by Weibull's law. */
 static void print_shares(const struct dea_weibull_fit *fit, const char *what,
                          const struct shown *shown)
@@ -297,19 +310,13 @@ static void print_breakdown_fit(const struct dea_breakdown_fit *fit)
     printf("at the stretch %.4g\n\n", alike);
   }
   for (size_t k = 0; k < DEA_WEIBULL_PARAMS; k++) {
-    const struct dea_fit_value value = {.value = fit->fit.value[k],
-                                        .std = fit->fit.std[k],
-                                        .low = fit->fit.low[k],
-                                        .high = fit->fit.high[k],
-                                        .fixed = fit->data.held[k]};
     const struct dea_quantity *given =
         k == DEA_WEIBULL_STRETCH ? &fit->file->exponent : &fit->file->thickness_exponent;
-    if (value.fixed && given->origin == DEA_ABSENT) {
+    if (fit->data.held[k] && given->origin == DEA_ABSENT) {
       printf("  %-20s    unknown: all films were alike in it, and it was not given\n",
              rows[k].name);
     } else {
-      printf("  %-20s %10.6g", rows[k].name, rows[k].shown.factor * value.value);
-      print_known(&value, &rows[k].shown, 3, "", false);
+      print_weibull(&fit->fit, k, rows[k].name, &rows[k].shown, fit->data.held[k]);
     }
   }
   print_shares(&fit->fit, "of such films break", &rows[0].shown);
@@ -356,12 +363,7 @@ static void print_life_law(const struct dea_life_fit *fit)
   printf("\nWeibull's law of the life in %s; scale: by when 63.2 %% have failed\n\n",
          dea_life_clock_units[clock]);
   for (size_t k = 0; k < 2; k++) {
-    const struct dea_fit_value value = {.value = fit->fit.value[k],
-                                        .std = fit->fit.std[k],
-                                        .low = fit->fit.low[k],
-                                        .high = fit->fit.high[k]};
-    printf("  %-20s %10.6g", names[k], shown[k].factor * value.value);
-    print_known(&value, &shown[k], 3, "", false);
+    print_weibull(&fit->fit, k, names[k], &shown[k], false);
   }
   print_shares(&fit->fit, "fail", &shown[0]);
 }
@@ -394,7 +396,7 @@ struct request {
 /* fit_KIND: reads a file of a kind, fits (`run`: file into &fit), writes the folder and prints what
  * there is. */
 #define FIT_KIND(kind, form, its_fit, run)                                                         \
-  static int fit_##kind(struct dea_cli *cli, const struct request *request)                        \
+  static dea_status fit_##kind(struct dea_cli *cli, const struct request *request)                 \
   {                                                                                                \
     struct dea_context *ctx = cli->ctx;                                                            \
     const struct dea_fit_folder to = {request->output, request->force, cli->command_line,          \
@@ -414,11 +416,9 @@ struct request {
         printf("\nwritten to %s\n", request->output);                                              \
       }                                                                                            \
     }                                                                                              \
-    fflush(stdout);                                                                                \
-    const int code = cli_report(cli, status);                                                      \
     dea_##its_fit##_free(&fit);                                                                    \
     dea_fit_head_destroy(ctx, file);                                                               \
-    return code;                                                                                   \
+    return status;                                                                                 \
   }
 FIT_KIND(material, dea_fit_form, fit, dea_fit_file_run(ctx, file, &request->options, &fit))
 FIT_KIND(device, dea_device_form, device_fit,
@@ -429,26 +429,21 @@ FIT_KIND(life, dea_life_form, life_fit, dea_life_fit_run(ctx, file, &fit))
 /* Kinds of fit files other than that of a material, by the key that tells them. */
 static const struct {
   const char *key;
-  int (*fit)(struct dea_cli *cli, const struct request *request);
+  dea_status (*fit)(struct dea_cli *cli, const struct request *request);
 } kinds[] = {{"design", fit_device}, {"breakdown", fit_breakdown}, {"life", fit_life}};
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
-  struct dea_text folder = {.ctx = cli->ctx};
-  request->output = cli_output_name(request->output, request->file, "fit", &folder);
-  dea_status status = request->output == NULL ? DEA_E_MEMORY : DEA_OK;
-  int (*fit)(struct dea_cli *, const struct request *) = NULL;
-  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && fit == NULL && status == DEA_OK; k++) {
-    bool has = false;
-    status = dea_fit_file_has(cli->ctx, request->file, kinds[k].key, &has);
-    fit = has ? kinds[k].fit : NULL;
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->file, "fit", &request->output));
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+    bool has;
+    DEA_TRY(cli->ctx, dea_fit_file_has(cli->ctx, request->file, kinds[k].key, &has));
+    if (has) {
+      return kinds[k].fit(cli, request);
+    }
   }
-  int code = status != DEA_OK ? cli_report(cli, status)
-             : fit != NULL    ? fit(cli, request)
-                              : fit_material(cli, request);
-  dea_text_free(&folder);
-  return code;
+  return fit_material(cli, request);
 }
 
 static const struct request defaults = {.format = {.svg = true, .width_m = 85e-3}};

@@ -18,17 +18,17 @@ static const char *kind_of(const struct dea_material_data *data)
   return data->kind.value >= 0 ? kind_names[data->kind.value] : "";
 }
 
-/* One line of the list of all materials. */
-static void print_line(const struct dea_material_data *data)
+/* One line of the list of all materials, and what there are several of. */
+static void add_line(struct dea_text *out, const struct dea_material_data *data)
 {
-  printf("%-28s %-10s %s\n", data->name.text, kind_of(data), data->title.text);
+  dea_text_add(out, "%-28s %-10s %s\n", data->name.text, kind_of(data), data->title.text);
   for (size_t i = 0; i < data->law_count; i++) {
-    printf("%-28s   law %s (%s)%s\n", "", data->laws[i].head.id.text, data->laws[i].law_name.text,
-           i == 0 && data->law_count > 1 ? ", default" : "");
+    dea_text_add(out, "%-28s   law %s (%s)%s\n", "", data->laws[i].head.id.text,
+                 data->laws[i].law_name.text, i == 0 && data->law_count > 1 ? ", default" : "");
   }
   for (size_t i = 0; i < data->permittivity_count; i++) {
-    printf("%-28s   permittivity %s%s\n", "", data->permittivity[i].head.id.text,
-           i == 0 && data->permittivity_count > 1 ? ", default" : "");
+    dea_text_add(out, "%-28s   permittivity %s%s\n", "", data->permittivity[i].head.id.text,
+                 i == 0 && data->permittivity_count > 1 ? ", default" : "");
   }
 }
 
@@ -142,25 +142,28 @@ static bool in_section(const struct dea_listed *item, const char *path, size_t l
   return section_length(item->path) == length && strncmp(item->path, path, length) == 0;
 }
 
-/* Values of one section, in the words of the file; prose comes after the numbers. */
+enum { PROSE = 4 };
+
+/* Place of a key in its section: prose comes in this order, after the numbers. */
+static int rank_of(const char *key)
+{
+  static const char *const prose[PROSE] = {"uncertainty", "range", "source", "note"};
+  int rank = PROSE;
+  while (rank > 0 && strcmp(prose[rank - 1], key) != 0) {
+    rank--;
+  }
+  return rank;
+}
+
+/* Values of one section, in the words of the file. */
 static void add_section(struct dea_text *out, const struct dea_listing *listing, const char *path,
                         size_t length)
 {
-  static const char *const prose[] = {"uncertainty", "range", "source", "note"};
-  const size_t prose_count = sizeof prose / sizeof prose[0];
-  for (size_t pass = 0; pass <= prose_count; pass++) {
+  for (int rank = 0; rank <= PROSE; rank++) {
     for (size_t i = 0; i < listing->count; i++) {
-      if (!in_section(&listing->items[i], path, length)) {
-        continue;
-      }
-      const char *key = leaf(listing->items[i].path);
-      size_t which = 0;
-      while (which < prose_count && strcmp(prose[which], key) != 0) {
-        which++;
-      }
-      if ((pass == 0 && which == prose_count) || (pass > 0 && which == pass - 1)) {
-        const char *text = listing->items[i].text;
-        size_t before = out->length;
+      const char *key = leaf(listing->items[i].path), *text = listing->items[i].text;
+      if (in_section(&listing->items[i], path, length) && rank_of(key) == rank) {
+        const size_t before = out->length;
         dea_text_add(out, "    %-14s ", key);
         cli_add_wrapped(out, (int)(out->length - before), text, strlen(text));
       }
@@ -211,66 +214,55 @@ static json_t *material_json(const struct dea_catalogue_entry *entry)
                    "values", values);
 }
 
-/* How a material is shown; in JSON it goes to the array. */
-enum form { FORM_LINES, FORM_WHOLE, FORM_TABLE, FORM_JSON };
-
-static dea_status show(struct dea_cli *cli, const char *name, enum form form, json_t *array)
+/* Shows a material; in JSON it goes to the array. */
+static dea_status show(struct dea_cli *cli, const struct request *request, const char *name,
+                       json_t *array)
 {
   struct dea_text out = {.ctx = cli->ctx};
   struct dea_catalogue_entry *entry;
   DEA_TRY(cli->ctx, dea_catalogue_read(cli->ctx, name, (struct dea_location){0}, &entry));
-  switch (form) {
-  case FORM_JSON:
+  if (request->json) {
     json_array_append_new(array, material_json(entry));
-    break;
-  case FORM_WHOLE:
-    add_material(&out, entry);
-    break;
-  case FORM_TABLE:
+  } else if (request->markdown) {
     add_table_row(&out, &entry->data);
-    break;
-  case FORM_LINES:
-    print_line(&entry->data);
-    break;
+  } else if (request->name != NULL) {
+    add_material(&out, entry);
+  } else {
+    add_line(&out, &entry->data);
   }
   dea_catalogue_destroy(cli->ctx, entry);
   return cli_print_text(DEA_OK, &out);
 }
 
 /* Shows all; one file with errors does not hide the others. */
-static dea_status show_all(struct dea_cli *cli, enum form form, json_t *array)
+static dea_status show_all(struct dea_cli *cli, const struct request *request, json_t *array)
 {
   const char **names;
   size_t count;
   dea_status worst = DEA_OK;
   DEA_TRY(cli->ctx, dea_catalogue_names(cli->ctx, &names, &count));
   for (size_t i = 0; i < count; i++) {
-    dea_status status = show(cli, names[i], form, array);
+    dea_status status = show(cli, request, names[i], array);
     worst = status != DEA_OK ? status : worst;
   }
   dea_free(cli->ctx, names);
   return worst;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   json_t *array = request->json ? json_array() : NULL;
-  enum form form = request->json           ? FORM_JSON
-                   : request->markdown     ? FORM_TABLE
-                   : request->name != NULL ? FORM_WHOLE
-                                           : FORM_LINES;
-  if (form == FORM_TABLE) {
+  if (request->markdown && !request->json) {
     puts("| material | density (kg/m3) | stiffness | branches | permittivity | breakdown (V/um) | "
          "resistivity (ohm m) |\n|---|---|---|---|---|---|---|");
   }
-  dea_status status =
-      request->name != NULL ? show(cli, request->name, form, array) : show_all(cli, form, array);
+  dea_status status = request->name != NULL ? show(cli, request, request->name, array)
+                                            : show_all(cli, request, array);
   if (request->json) {
     cli_print_json(array);
   }
-  fflush(stdout);
-  return cli_report(cli, status);
+  return status;
 }
 
 static const struct cli_option options[] = {

@@ -1,10 +1,9 @@
+#include "base/write_file.h"
 #include "cli/cli.h"
-
 #include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/actuator/mesh_file.h"
 
 #include <math.h>
-#include <sys/stat.h>
 
 struct request {
   const char *design, *output; // output: NULL for none
@@ -22,13 +21,8 @@ static size_t count_flat(const struct dea_grid *grid)
   return count;
 }
 
-/* Displacements of all nodes, those that are held too, as model 3d counts them. */
-static size_t count_unknowns(const struct dea_grid *grid)
-{
-  return 3 * grid->node_count;
-}
-
-/* Elements, nodes and their quality, as all meshes have them. */
+/* Elements, nodes, and displacements of all nodes, those that are held too, as model 3d counts
+ * them. */
 static void print_size(const struct dea_grid *grid)
 {
   int face = (grid->order + 1) * (grid->order + 1); // nodes
@@ -39,16 +33,7 @@ static void print_size(const struct dea_grid *grid)
   }
   printf("of %d nodes\n", face * (grid->order_z + 1));
   printf("%-20s %zu\n", "nodes", grid->node_count);
-  printf("%-20s %zu\n", "unknowns", count_unknowns(grid));
-}
-
-static void print_quality(const struct request *request, const struct dea_grid *grid)
-{
-  printf("%-20s %.3f of an element's mean\n", "smallest Jacobian",
-         dea_grid_smallest_jacobian(grid));
-  if (request->output != NULL) {
-    printf("%-20s %s\n", "file", request->output);
-  }
+  printf("%-20s %zu\n", "unknowns", 3 * grid->node_count);
 }
 
 /* Which part of the device it is of. */
@@ -73,7 +58,7 @@ static void print_mesh(const struct request *request, const struct dea_layout_me
     json_t *json = json_pack(
         "{s:I, s:I, s:I, s:I, s:f}", "elements", (json_int_t)grid->element_count, "flat_elements",
         (json_int_t)count_flat(grid), "nodes", (json_int_t)grid->node_count, "unknowns",
-        (json_int_t)count_unknowns(grid), "smallest_jacobian", dea_grid_smallest_jacobian(grid));
+        (json_int_t)(3 * grid->node_count), "smallest_jacobian", dea_grid_smallest_jacobian(grid));
     if (disc) {
       json_object_set_new(json, "angle_deg",
                           json_real(dea_fibre_disc_angle(plate) * 180 / acos(-1)));
@@ -89,7 +74,11 @@ static void print_mesh(const struct request *request, const struct dea_layout_me
     printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
            1e3 * plate->size, 1e3 * plate->edge);
   }
-  print_quality(request, grid);
+  printf("%-20s %.3f of an element's mean\n", "smallest Jacobian",
+         dea_grid_smallest_jacobian(grid));
+  if (request->output != NULL) {
+    printf("%-20s %s\n", "file", request->output);
+  }
 }
 
 static dea_status build_mesh(struct dea_cli *cli, const void *user, const struct dea_design *design,
@@ -109,29 +98,14 @@ static dea_status build_mesh(struct dea_cli *cli, const void *user, const struct
   return status;
 }
 
-/* What is there is not written over unless that is wanted, and the design itself never. */
-static dea_status refuse_output(struct dea_cli *cli, const struct request *request)
-{
-  struct stat design, output;
-  if (request->output == NULL || stat(request->output, &output) != 0) {
-    return DEA_OK;
-  }
-  if (stat(request->design, &design) == 0 && design.st_dev == output.st_dev &&
-      design.st_ino == output.st_ino) {
-    return dea_fail(cli->ctx, DEA_E_IO, "'%s' is the design itself", request->output);
-  }
-  return request->force ? DEA_OK
-                        : dea_fail(cli->ctx, DEA_E_IO, "'%s' already exists; --force replaces it",
-                                   request->output);
-}
-
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
-  const dea_status status = refuse_output(cli, request);
-  return status == DEA_OK
-             ? cli_with_device(cli, request->design, &request->overrides, build_mesh, request)
-             : cli_report(cli, status);
+  if (request->output != NULL && !request->force && dea_path_exists(request->output)) {
+    return dea_fail(cli->ctx, DEA_E_IO, "'%s' already exists; --force replaces it",
+                    request->output);
+  }
+  return cli_with_device(cli, request->design, &request->overrides, build_mesh, request);
 }
 
 static const struct cli_option options[] = {

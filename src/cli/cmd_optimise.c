@@ -13,22 +13,22 @@ struct request {
   struct dea_plot_format format;
 };
 
-static void print_optimum(const struct dea_case_key *case_key, const struct dea_optimum *best)
+static void print_optimum(const struct dea_design_space *space, const struct dea_optimum *best)
 {
-  for (size_t j = 0; j < case_key->variable_count; j++) {
+  for (size_t j = 0; j < space->variable_count; j++) {
     char text[80];
-    const char *bound = dea_optimum_bound(case_key, best, j);
-    dea_device_param_show(&case_key->params[j], best->p[j], text);
-    printf("  %-28s %s%s%s%s\n", case_key->params[j].param.name, text,
+    const char *bound = dea_optimum_bound(space, best, j);
+    dea_device_param_show(&space->params[j], best->p[j], text);
+    printf("  %-28s %s%s%s%s\n", space->params[j].param.name, text,
            bound != NULL ? ", at its " : "", bound != NULL ? bound : "",
            bound != NULL ? " bound" : "");
-    for (size_t k = 0; k < case_key->params[j].tie_count; k++) {
-      printf("  %-28s %s\n", case_key->params[j].ties[k].param.name, text);
+    for (size_t k = 0; k < space->params[j].tie_count; k++) {
+      printf("  %-28s %s\n", space->params[j].ties[k].param.name, text);
     }
   }
-  for (size_t k = 0; k < case_key->file->objective_count; k++) {
-    const struct dea_column *column = &case_key->quantities[case_key->objectives[k]].shown;
-    const bool most = case_key->file->objectives[k].goal.value == DEA_MOST; // f is the least
+  for (size_t k = 0; k < space->file->objective_count; k++) {
+    const struct dea_column *column = &space->quantities[space->objectives[k]].shown;
+    const bool most = space->file->objectives[k].goal.value == DEA_MOST; // f is the least
     printf("  %-28s %.6g %s\n", column->key, column->factor * (most ? -1 : 1) * best->f[k],
            column->display_unit);
   }
@@ -54,73 +54,67 @@ static void print_flags(const struct dea_optimise_report *report)
 }
 
 /* Where gradients came from, of a search that goes by them. */
-static void print_gradients(const struct dea_case_key *case_key,
+static void print_gradients(const struct dea_design_space *space,
                             const struct dea_optimise_report *report)
 {
-  const int method = case_key->file->method.value;
+  const int method = space->file->method.value;
   if (method != DEA_SLSQP && method != DEA_MMA) {
     return;
   }
   printf("gradients: %s", report->gradients ? "of the model" : "by differences");
-  for (size_t j = 0, told = 0; j < case_key->variable_count && report->gradients; j++) {
+  for (size_t j = 0, told = 0; j < space->variable_count && report->gradients; j++) {
     if (report->replaced[j] > 0) {
       printf("%s %s (%zu designs)", told++ > 0 ? "," : ", by differences of",
-             case_key->params[j].param.name, report->replaced[j]);
+             space->params[j].param.name, report->replaced[j]);
     }
   }
   printf("\n");
 }
 
-static void print_report(const struct dea_case_key *case_key,
+static void print_report(const struct dea_design_space *space,
                          const struct dea_optimise_report *report, const char *folder)
 {
   for (size_t i = 0; i < report->count; i++) {
     if (report->count > 1) {
       printf("best-%zu\n", i + 1);
     }
-    print_optimum(case_key, &report->optima[i]);
+    print_optimum(space, &report->optima[i]);
   }
   print_flags(report);
   if (report->scattered > 1) {
     printf("each stands for %zu that scatter\n", report->scattered);
   }
-  print_gradients(case_key, report);
+  print_gradients(space, report);
   printf("designs: %zu, %zu of them computed before", report->evaluations, report->before);
   if (report->failed > 0) {
     printf(", %zu without all values", report->failed);
   }
   printf("\nwritten to %s\n", folder);
-  fflush(stdout);
 }
 
 static dea_status optimise(struct dea_cli *cli, const struct request *request)
 {
-  struct dea_case_key *case_key;
-  DEA_TRY(cli->ctx, dea_case_key_read(cli->ctx, request->file, &case_key));
+  struct dea_design_space *space;
+  DEA_TRY(cli->ctx, dea_design_space_read(cli->ctx, request->file, &space));
   struct dea_optimise_report *report = dea_alloc(cli->ctx, 1, sizeof *report);
   dea_status status =
-      report != NULL ? dea_optimise_run(case_key, &request->options, report) : DEA_E_MEMORY;
+      report != NULL ? dea_optimise_run(space, &request->options, report) : DEA_E_MEMORY;
   cli_progress_clear(cli);
   if (report != NULL && report->evaluations > 0) {
-    print_report(case_key, report, request->options.folder);
+    print_report(space, report, request->options.folder);
   }
   dea_free(cli->ctx, report);
-  dea_case_key_destroy(case_key);
+  dea_design_space_destroy(space);
   return status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
-  struct dea_text folder = {.ctx = cli->ctx};
   request->options.format = request->format;
   request->options.processes = cli_processes(request->processes);
-  request->options.folder =
-      cli_output_name(request->options.folder, request->file, "optimise", &folder);
-  int code =
-      cli_report(cli, request->options.folder == NULL ? DEA_E_MEMORY : optimise(cli, request));
-  dea_text_free(&folder);
-  return code;
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->file, "optimise", &request->options.folder));
+  return optimise(cli, request);
 }
 
 static const struct request defaults = {.format = {.svg = true, .width_m = 85e-3}};

@@ -37,7 +37,7 @@ static void complete_format(struct dea_plot_format *format, const struct dea_run
   }
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_run *data = NULL;
@@ -62,10 +62,9 @@ static int run(struct dea_cli *cli, void *user)
   if (status == DEA_OK && !cli->quiet) {
     fprintf(stderr, "figures are in %s\n", target);
   }
-  int code = cli_report(cli, status);
   dea_run_destroy(cli->ctx, data);
   dea_free(cli->ctx, folder);
-  return code;
+  return status;
 }
 
 static const struct request defaults = {.voltage_V = NAN};

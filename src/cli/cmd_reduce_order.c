@@ -8,7 +8,6 @@ struct request {
   const char *design, *output, *files[DEA_REDUCED_FORMATS];
   double bias_V, damping;
   struct cli_overrides overrides;
-  bool json;
 };
 
 static void print_order(const struct request *request, const struct dea_reduced_order *o,
@@ -45,28 +44,44 @@ static void print_order(const struct request *request, const struct dea_reduced_
   }
 }
 
+/* All files that are asked for. */
+static dea_status write_files(struct dea_context *ctx, const struct request *request,
+                              const struct dea_reduced_order *o, const struct dea_device *device)
+{
+  const double bias_V = request->bias_V, damping = request->damping;
+  if (request->output != NULL) {
+    DEA_TRY(ctx, dea_reduced_order_write(ctx, o, device, request->output));
+  }
+  if (request->c != NULL) {
+    DEA_TRY(ctx, dea_reduced_order_write_c(ctx, o, device, request->c));
+  }
+  if (request->fmu != NULL) {
+    DEA_TRY(ctx, dea_reduced_order_write_fmu(ctx, o, device, request->fmu));
+  }
+  if (request->state_space != NULL) {
+    DEA_TRY(ctx,
+            dea_reduced_order_write_state_space(ctx, o, bias_V, damping, request->state_space));
+  }
+  if (request->spice != NULL) {
+    DEA_TRY(ctx, dea_reduced_order_write_spice(ctx, o, bias_V, damping, request->spice));
+  }
+  return request->mujoco == NULL
+             ? DEA_OK
+             : dea_reduced_order_write_mujoco(ctx, o, device, bias_V, damping, request->mujoco);
+}
+
 static dea_status build(struct dea_cli *cli, const void *user, const struct dea_design *design,
                         const struct dea_device *device)
 {
   const struct request *request = user;
   struct dea_model_settings settings = dea_model_settings_of(design);
   struct dea_reduced_order *order;
-  dea_status status = dea_model_check(cli->ctx, dea_model_find("reduced"), design, device);
-  if (status != DEA_OK) {
-    return status;
-  }
-  status = settings.reduced.file != NULL && request->output == NULL
-               ? dea_reduced_order_read(cli->ctx, settings.reduced.file, device, &settings, &order)
-               : dea_reduced_order_build(cli->ctx, device, &settings, &order);
-  if (status == DEA_OK && request->output != NULL) {
-    status = dea_reduced_order_write(cli->ctx, order, device, request->output);
-  }
-  for (int k = 0; k < DEA_REDUCED_FORMATS && status == DEA_OK; k++) {
-    status = request->files[k] == NULL
-                 ? DEA_OK
-                 : dea_reduced_order_export(cli->ctx, order, device, (enum dea_reduced_format)k,
-                                            request->bias_V, request->damping, request->files[k]);
-  }
+  DEA_TRY(cli->ctx, dea_model_check(cli->ctx, dea_model_find("reduced"), design, device));
+  dea_status status =
+      settings.reduced.file != NULL && request->output == NULL
+          ? dea_reduced_order_read(cli->ctx, settings.reduced.file, device, &settings, &order)
+          : dea_reduced_order_build(cli->ctx, device, &settings, &order);
+  status = status == DEA_OK ? write_files(cli->ctx, request, order, device) : status;
   if (status == DEA_OK) {
     print_order(request, order, device);
   }
@@ -74,7 +89,7 @@ static dea_status build(struct dea_cli *cli, const void *user, const struct dea_
   return status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   return cli_with_device(cli, request->design, &request->overrides, build, request);
@@ -113,7 +128,4 @@ const struct dea_command cmd_reduce_order = {
              "design. The result has one energy, so that force and charge are reciprocal, mass, "
              "viscous branches, its range and its error at samples that were left out. "
              "`dea run --model reduced` uses it: sweep, transient, frequency.",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

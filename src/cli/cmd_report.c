@@ -6,7 +6,6 @@
 #include "base/write_file.h"
 #include "job/report_runs.h"
 
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -34,31 +33,29 @@ static dea_status check_place(struct dea_context *ctx, const char *path)
                         "%s already exists and is not a page; choose another name with -o", path);
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   const char *first = request->runs.at[0];
   if (request->finger < 0) {
-    return cli_usage_error(cli, &cmd_report, "--finger: a stiffness is not negative: %g N/m",
-                           request->finger);
+    return cli_usage_error(cli, "--finger: a stiffness is not negative: %g N/m", request->finger);
   }
-  char *path = request->output != NULL     ? dea_copy_text(cli->ctx, request->output, SIZE_MAX)
-               : dea_path_is_folder(first) ? dea_path_join(cli->ctx, first, "report.html")
-                                           : dea_copy_text(cli->ctx, "report.html", SIZE_MAX);
+  char *joined = dea_path_join(cli->ctx, dea_path_is_folder(first) ? first : "", "report.html");
+  const char *path = request->output != NULL ? request->output : joined;
   const struct dea_report_options chosen = {.command = cli->command_line,
                                             .finger_N_per_m = request->finger,
                                             .measurement = request->measurement,
                                             .fit = request->fit,
                                             .explorer = request->explorer};
-  dea_status status = path == NULL ? DEA_E_MEMORY : check_place(cli->ctx, path);
+  dea_status status = joined == NULL ? DEA_E_MEMORY : check_place(cli->ctx, path);
   if (status == DEA_OK) {
     status = dea_job_report(cli->ctx, request->runs.at, request->runs.count, &chosen, path);
   }
   if (status == DEA_OK && !cli->quiet) {
     fprintf(stderr, "the report is %s\n", path);
   }
-  dea_free(cli->ctx, path);
-  return cli_report(cli, status);
+  dea_free(cli->ctx, joined);
+  return status;
 }
 
 static const struct request defaults = {.finger = 500}; // N/m: an assumption that the page states

@@ -23,7 +23,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { STUDIES_MAX = 8, TABLE_ROWS = 9, SHOWN_MAX = 4, SHOWN_WIDTH = 16 };
+enum { STUDIES_MAX = 8, TABLE_ROWS = 9, MONITORS_SHOWN = 4, SHOWN_MAX = 4 + MONITORS_SHOWN };
 static const char sensitivity_name[] = "sensitivity";
 
 struct request {
@@ -39,25 +39,23 @@ struct run {
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
-  struct dea_text directory;
-  struct dea_text others; // the designs that it is compared with, as a value of the design
   struct dea_job job;
 };
 
-static int parse_model(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target)
+static dea_status parse_model(struct dea_cli *cli, const struct cli_option *option,
+                              const char *text, void *target)
 {
   struct cli_words *models = target;
   if (models->count == DEA_DESIGN_MODELS_MAX) {
-    return cli_usage_error(cli, command, "too many models");
+    return cli_usage_error(cli, "too many models");
   }
   for (size_t i = 0; i < models->count; i++) {
     if (strcmp(models->at[i], text) == 0) {
-      return cli_usage_error(cli, command, "--%s %s is given twice", option->name, text);
+      return cli_usage_error(cli, "--%s %s is given twice", option->name, text);
     }
   }
   models->at[models->count++] = text;
-  return 0;
+  return DEA_OK;
 }
 
 /* The models to run: --model, or those of the design. DEA_E_USAGE or DEA_E_DESIGN for unknown
@@ -122,10 +120,10 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
   size_t count = request->overrides.count;
   memcpy(overrides, request->overrides.at, sizeof request->overrides.at);
   if (request->designs.count > 1) {
-    run->others.ctx = ctx;
-    add_designs(request->designs.at + 1, request->designs.count - 1, &run->others);
-    overrides[count++] = (struct dea_override){"compute.compare", dea_text_get(&run->others)};
-    DEA_TRY_MEMORY(!run->others.failed);
+    struct dea_text others = {.ctx = ctx};
+    add_designs(request->designs.at + 1, request->designs.count - 1, &others);
+    overrides[count].key = "compute.compare";
+    DEA_TRY(ctx, cli_keep_text(&others, &overrides[count++].value));
   }
   DEA_TRY(ctx, dea_design_read_memory(ctx, request->designs.at[0], bytes, length, overrides, count,
                                       &run->design));
@@ -157,25 +155,9 @@ static dea_status prepare(struct dea_cli *cli, const struct request *request, st
 static void release(struct dea_cli *cli, struct run *run)
 {
   dea_job_end(cli->ctx, &run->job);
-  if (run->directory.ctx != NULL) {
-    dea_text_free(&run->directory);
-  }
-  if (run->others.ctx != NULL) {
-    dea_text_free(&run->others);
-  }
   dea_result_destroy(cli->ctx, run->result);
   dea_device_destroy(cli->ctx, run->device);
   dea_design_destroy(cli->ctx, run->design);
-}
-
-static void print_cell(double value, double factor, int width, int digits)
-{
-  if (isnan(value)) {
-    printf("%*s", width, "-");
-  } else {
-    double shown = value * factor; // without the sign of what is 0 to all digits shown
-    printf("%*.*f", width, digits, fabs(shown) < 0.5 * pow(10, -digits) ? 0.0 : shown);
-  }
 }
 
 /* The field at which the film breaks down, with the band of its sources and the chance there. */
@@ -200,81 +182,89 @@ static void print_breakdown(const struct dea_load_point *p, const struct dea_bre
 /* slack: of a film without tension. */
 static void print_event(const struct dea_event *event, const struct dea_breakdown *film, bool slack)
 {
+  static const char *const names[] = {[DEA_EVENT_PULL_IN] = "pull-in",
+                                      [DEA_EVENT_SNAP_BACK] = "snap-back",
+                                      [DEA_EVENT_SLACK] = "the film goes slack",
+                                      [DEA_EVENT_BUCKLING] = "the film buckles"};
   const struct dea_load_point *p = &event->point;
   printf("  at %.4g kV", 1e-3 * p->voltage_V);
   if (!isnan(p->electrode_stretch)) { // of a disc
     printf(", electrode stretch %.5g", p->electrode_stretch);
   }
   fputs(": ", stdout);
-  switch (event->kind) {
-  case DEA_EVENT_PULL_IN:
-    puts(slack ? "pull-in of a slack film: not predictive" : "pull-in");
-    break;
-  case DEA_EVENT_SNAP_BACK:
-    puts("snap-back");
-    break;
-  case DEA_EVENT_SLACK:
-    puts("the film goes slack");
-    break;
-  case DEA_EVENT_BREAKDOWN:
+  if (event->kind == DEA_EVENT_BREAKDOWN) {
     print_breakdown(p, film);
-    break;
-  case DEA_EVENT_BUCKLING:
-    puts("the film buckles");
-    break;
+  } else {
+    printf("%s%s\n", names[event->kind],
+           slack && event->kind == DEA_EVENT_PULL_IN ? " of a slack film: not predictive" : "");
   }
 }
 
-/* z of the fibre tip, "<" before what is an upper bound; left out beside a prediction. */
-static void print_tip(const struct dea_load_point *p, bool left_out)
-{
-  char text[40];
-  bool bound = dea_point_is_bound(p, dea_point_column_find("fibre_tip_z_m"));
-  if (isnan(p->fibre_tip_z_m) || !bound || left_out) {
-    print_cell(left_out ? NAN : p->fibre_tip_z_m, 1e6, 12, 1);
-    return;
-  }
-  snprintf(text, sizeof text, "<%.1f", 1e6 * p->fibre_tip_z_m);
-  printf("%12s", text);
-}
-
-/* Columns of a device of any layout in place of what a disc has: what its monitors show, or without
- * any how far the film goes. */
+/* A column of the table of a sweep. */
 struct shown {
-  int columns[SHOWN_MAX];
-  size_t count;
+  int column; // of load points
+  const char *title, *unit;
+  double factor;
+  int width, digits;
 };
 
-static struct shown find_shown(const struct dea_context *ctx, const struct dea_curve *sweep)
+/* What is shown of a device of any layout: what its monitors show, or without any how far the film
+ * goes. */
+static size_t add_any(const struct dea_context *ctx, const struct dea_curve *sweep,
+                      struct shown out[MONITORS_SHOWN])
 {
-  struct shown shown;
-  shown.count = dea_curve_headlines(ctx, sweep, shown.columns, SHOWN_MAX);
-  if (shown.count == 0) {
-    shown = (struct shown){
-        {dea_point_column_find("lowest_z_m"), dea_point_column_find("highest_z_m")}, 2};
+  int columns[MONITORS_SHOWN];
+  size_t count = dea_curve_headlines(ctx, sweep, columns, MONITORS_SHOWN);
+  if (count == 0) {
+    columns[count++] = dea_point_column_find("lowest_z_m");
+    columns[count++] = dea_point_column_find("highest_z_m");
   }
-  return shown;
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_column *c = dea_column_at(ctx, columns[i]);
+    const bool bare = strcmp(c->display_unit, "1") == 0;
+    out[i] = (struct shown){columns[i], c->header, bare ? "" : c->display_unit,
+                            c->factor,  16,        strcmp(c->si_unit, "m") == 0 ? 1 : 4};
+  }
+  return count;
 }
 
-/* shown: of a device of any layout; NULL: of a disc. */
-static void print_row(const struct dea_context *ctx, const struct dea_load_point *p,
-                      const struct shown *shown, bool left_out)
+static size_t find_shown(const struct dea_context *ctx, const struct dea_curve *sweep,
+                         bool any_layout, struct shown out[SHOWN_MAX])
 {
-  print_cell(p->voltage_V, 1e-3, 9, 3);
-  if (shown != NULL) {
-    for (size_t i = 0; i < shown->count; i++) {
-      const struct dea_column *c = dea_column_at(ctx, shown->columns[i]);
-      print_cell(dea_point_get(p, shown->columns[i]), c->factor, SHOWN_WIDTH,
-                 strcmp(c->si_unit, "m") == 0 ? 1 : 4);
-    }
-  } else {
-    print_cell(p->electrode_stretch, 1, 10, 5);
-    print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
-    print_tip(p, left_out);
+  int (*const find)(const char *key) = dea_point_column_find;
+  size_t n = 0;
+  out[n++] = (struct shown){find("voltage_V"), "V", "kV", 1e-3, 9, 3};
+  if (any_layout) {
+    n += add_any(ctx, sweep, out + n);
+  } else { // a disc
+    out[n++] = (struct shown){find("electrode_stretch"), "stretch", "", 1, 10, 5};
+    out[n++] = (struct shown){find("electrode_edge_u_m"), "u edge", "um", 1e6, 12, 2};
+    out[n++] = (struct shown){find("fibre_tip_z_m"), "z tip", "um", 1e6, 12, 1};
   }
-  print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
-  print_cell(p->breakdown_margin, 100, 10, 1);
-  print_cell(p->min_tension_N_per_m, 1, 10, 3);
+  out[n++] = (struct shown){find("true_field_V_per_m"), "field", "V/um", 1e-6, 12, 2};
+  out[n++] = (struct shown){find("breakdown_margin"), "margin", "%", 100, 10, 1};
+  out[n++] = (struct shown){find("min_tension_N_per_m"), "tension", "N/m", 1, 10, 3};
+  return n;
+}
+
+/* "<" before what is an upper bound; left out beside a prediction. */
+static void print_cell(const struct dea_load_point *p, const struct shown *c, bool left_out)
+{
+  char text[400] = "-";
+  const double value = left_out ? NAN : c->factor * dea_point_get(p, c->column);
+  if (!isnan(value)) { // without the sign of what is 0 to all digits shown
+    snprintf(text, sizeof text, "%s%.*f", dea_point_is_bound(p, c->column) ? "<" : "", c->digits,
+             fabs(value) < 0.5 * pow(10, -c->digits) ? 0.0 : value);
+  }
+  printf("%*s", c->width, text);
+}
+
+static void print_row(const struct dea_result *result, const struct dea_curve *sweep,
+                      const struct dea_load_point *p, const struct shown *shown, size_t count)
+{
+  for (size_t i = 0; i < count; i++) {
+    print_cell(p, &shown[i], dea_figure_leaves_out(result, sweep, shown[i].column));
+  }
   char words[DEA_FLAGS_SIZE];
   dea_flags_text(dea_load_point_flags(p) & ~(1u << DEA_FLAG_BOUND | 1u << DEA_FLAG_PLAIN), words);
   printf("%s%s%s\n", words[0] != '\0' ? "  " : "",
@@ -295,41 +285,25 @@ static size_t row_step(size_t count)
   }
 }
 
-/* Titles and units of the columns before the field. */
-static void print_shown(const struct dea_context *ctx, const struct shown *shown)
-{
-  printf("%9s", "V");
-  for (size_t i = 0; i < shown->count; i++) {
-    printf(" %*.*s", SHOWN_WIDTH - 1, SHOWN_WIDTH - 1,
-           dea_column_at(ctx, shown->columns[i])->header);
-  }
-  printf("%12s%10s%10s\n%9s", "field", "margin", "tension", "kV");
-  for (size_t i = 0; i < shown->count; i++) {
-    const char *unit = dea_column_at(ctx, shown->columns[i])->display_unit;
-    printf("%*s", SHOWN_WIDTH, strcmp(unit, "1") == 0 ? "" : unit);
-  }
-  printf("%12s%10s%10s\n", "V/um", "%", "N/m");
-}
-
 /* A few rows of the sweep, the last one among them. */
 static void print_sweep(const struct dea_context *ctx, const struct dea_result *result,
                         const struct dea_curve *sweep, bool any_layout)
 {
-  const bool left_out =
-      dea_figure_leaves_out(result, sweep, dea_point_column_find("fibre_tip_z_m"));
-  const struct shown shown = find_shown(ctx, sweep);
-  if (any_layout) {
-    print_shown(ctx, &shown);
-  } else {
-    printf("%9s%10s%12s%12s%12s%10s%10s\n", "V", "stretch", "u edge", "z tip", "field", "margin",
-           "tension");
-    printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
+  struct shown shown[SHOWN_MAX];
+  const size_t count = find_shown(ctx, sweep, any_layout, shown);
+  for (size_t i = 0; i < count; i++) {
+    printf(" %*.*s", shown[i].width - 1, shown[i].width - 1, shown[i].title);
   }
-  size_t step = row_step(sweep->count);
+  putchar('\n');
+  for (size_t i = 0; i < count; i++) {
+    printf("%*s", shown[i].width, shown[i].unit);
+  }
+  putchar('\n');
+  const size_t step = row_step(sweep->count);
   for (size_t i = 0; i + 1 < sweep->count; i += step) {
-    print_row(ctx, &sweep->points[i], any_layout ? &shown : NULL, left_out);
+    print_row(result, sweep, &sweep->points[i], shown, count);
   }
-  print_row(ctx, &sweep->points[sweep->count - 1], any_layout ? &shown : NULL, left_out);
+  print_row(result, sweep, &sweep->points[sweep->count - 1], shown, count);
 }
 
 /* The sweep, or how long the path is where that was asked for alone, and the path's events. */
@@ -399,26 +373,30 @@ static bool is_noise(const struct dea_result_column *column, const char *text)
          fabs(strtod(text, NULL)) < least;
 }
 
-/* A cell as text, with the unit of its quantity where the title cannot say it; row SIZE_MAX: the
- * title. */
-static void add_cell(const struct dea_result_table *table, size_t row, size_t column, size_t value,
+/* Rows that are shown of a table are `every` rows apart. */
+static size_t table_step(const struct dea_result_table *table)
+{
+  return table->type.every > 0 ? table->type.every : 1;
+}
+
+/* A cell as text, with the unit of its quantity where the title cannot say it. line: 0 for the
+ * title, then rows that are shown. */
+static void add_cell(const struct dea_result_table *table, size_t line, size_t column, size_t value,
                      struct dea_text *out)
 {
   const struct dea_result_column *c = &table->type.columns[column];
-  const struct dea_column *quantity =
-      row != SIZE_MAX ? dea_result_table_quantity(table, row) : NULL;
-  if (row == SIZE_MAX) {
+  if (line == 0) {
     if (value == 0) {
       dea_result_table_column_title(c, out);
     }
     return;
   }
+  const size_t row = (line - 1) * table_step(table);
+  const struct dea_column *quantity = dea_result_table_quantity(table, row);
   bool percent = c->display_unit != NULL && strcmp(c->display_unit, "%") == 0 && c->list;
   dea_result_table_cell_text(table, row, column, value, percent ? ERROR_DIGITS : DIGITS, out);
   if (out->length > 0 && is_noise(c, dea_text_get(out))) {
-    struct dea_context *ctx = out->ctx;
-    dea_text_free(out);
-    *out = (struct dea_text){.ctx = ctx};
+    out->length = 0;
     dea_text_add(out, "0");
   }
   if (out->length > 0 && c->kind == DEA_CELL_VALUE && strcmp(quantity->display_unit, "1") != 0) {
@@ -428,25 +406,13 @@ static void add_cell(const struct dea_result_table *table, size_t row, size_t co
   }
 }
 
-/* Rows that are shown of a table are `every` rows apart. */
-static size_t table_step(const struct dea_result_table *table)
-{
-  return table->type.every > 0 ? table->type.every : 1;
-}
-
-/* The row of a line, SIZE_MAX for the titles in the first. */
-static size_t row_of_line(const struct dea_result_table *table, size_t line)
-{
-  return line == 0 ? SIZE_MAX : (line - 1) * table_step(table);
-}
-
 static int column_width(struct dea_context *ctx, const struct dea_result_table *table,
                         size_t column, size_t value, size_t rows)
 {
   size_t width = 0;
   for (size_t i = 0; i <= rows; i++) {
     struct dea_text text = {.ctx = ctx};
-    add_cell(table, row_of_line(table, i), column, value, &text);
+    add_cell(table, i, column, value, &text);
     width = text.length > width ? text.length : width;
     dea_text_free(&text);
   }
@@ -457,33 +423,30 @@ static dea_status print_rows(struct dea_context *ctx, const struct dea_result_ta
 {
   const size_t step = table_step(table), all = (table->row_count + step - 1) / step;
   const size_t rows = all < ROWS_SHOWN ? all : ROWS_SHOWN;
-  struct dea_text *lines = dea_alloc(ctx, rows + 1, sizeof *lines);
-  bool failed = lines == NULL;
-  for (size_t i = 0; i <= rows && !failed; i++) {
-    lines[i].ctx = ctx;
+  size_t values[DEA_RESULT_TABLE_COLUMNS_MAX];
+  int widths[DEA_RESULT_TABLE_COLUMNS_MAX][DEA_RESULT_TABLE_WIDTH_MAX];
+  bool failed = false;
+  for (size_t c = 0; c < table->type.column_count; c++) {
+    const bool shown = on_screen(&table->type.columns[c]) && has_any(table, c);
+    values[c] = shown ? dea_result_table_values(table, c) : 0;
+    for (size_t k = 0; k < values[c]; k++) {
+      widths[c][k] = column_width(ctx, table, c, k, rows);
+    }
   }
-  for (size_t c = 0; c < table->type.column_count && !failed; c++) {
-    bool shown = on_screen(&table->type.columns[c]) && has_any(table, c);
-    for (size_t k = 0; shown && k < dea_result_table_values(table, c); k++) {
-      int width = column_width(ctx, table, c, k, rows);
-      bool text = table->type.columns[c].kind == DEA_CELL_TEXT ||
-                  table->type.columns[c].kind == DEA_CELL_QUANTITY;
-      for (size_t i = 0; i <= rows; i++) {
+  for (size_t i = 0; i <= rows; i++) {
+    for (size_t c = 0; c < table->type.column_count; c++) {
+      const bool words = table->type.columns[c].kind == DEA_CELL_TEXT ||
+                         table->type.columns[c].kind == DEA_CELL_QUANTITY;
+      for (size_t k = 0; k < values[c]; k++) {
         struct dea_text cell = {.ctx = ctx};
-        add_cell(table, row_of_line(table, i), c, k, &cell);
-        dea_text_add(&lines[i], "  %*s", text ? -width : width, dea_text_get(&cell));
-        failed = failed || cell.failed || lines[i].failed;
+        add_cell(table, i, c, k, &cell);
+        printf("  %*s", words ? -widths[c][k] : widths[c][k], dea_text_get(&cell));
+        failed = failed || cell.failed;
         dea_text_free(&cell);
       }
     }
+    putchar('\n');
   }
-  for (size_t i = 0; lines != NULL && i <= rows; i++) {
-    if (!failed) {
-      puts(dea_text_get(&lines[i]));
-    }
-    dea_text_free(&lines[i]);
-  }
-  dea_free(ctx, lines);
   if (table->row_count > rows) {
     printf("  and %zu more (summary.json)\n", table->row_count - rows);
   }
@@ -592,19 +555,18 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
 }
 
 /* The folder of a run; with --keep "out-2", "out-3", ... where "out" exists. */
-static dea_status name_folder(const struct request *request, struct dea_text *out)
+static dea_status name_folder(struct dea_cli *cli, const struct request *request,
+                              const char **folder)
 {
-  struct dea_text made = {.ctx = out->ctx};
-  const char *name = cli_output_name(request->output, request->designs.at[0], "run", &made);
-  dea_text_add(out, "%s", name != NULL ? name : "");
-  const size_t length = out->failed ? 0 : dea_path_length(out->data);
-  for (size_t n = 2; request->keep && !out->failed && dea_path_exists(out->data); n++) {
-    out->length = 0;
-    dea_text_add(out, "%.*s-%zu", (int)length, name, n);
+  const char *name = request->output;
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->designs.at[0], "run", &name));
+  *folder = name;
+  for (size_t n = 2; request->keep && dea_path_exists(*folder); n++) {
+    struct dea_text text = {.ctx = cli->ctx};
+    dea_text_add(&text, "%.*s-%zu", (int)dea_path_length(name), name, n);
+    DEA_TRY(cli->ctx, cli_keep_text(&text, folder));
   }
-  const bool failed = out->failed || name == NULL;
-  dea_text_free(&made);
-  return failed ? DEA_E_MEMORY : DEA_OK;
+  return DEA_OK;
 }
 
 static dea_status run_all(struct dea_cli *cli, const struct request *request, struct run *run)
@@ -613,11 +575,9 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
   bool began, given = request->studies.count > 0; // else those that the design asks for
   char message[1024];
   DEA_TRY(ctx, prepare(cli, request, run));
-  run->directory.ctx = ctx;
   const char *folder = NULL; // the summary goes to stdout alone
   if (request->output != NULL || !request->json) {
-    DEA_TRY(ctx, name_folder(request, &run->directory));
-    folder = dea_text_get(&run->directory);
+    DEA_TRY(ctx, name_folder(cli, request, &folder));
   }
   const bool renewed = folder != NULL && !request->resume && !request->keep &&
                        dea_run_folder_is_of(ctx, folder, run->design);
@@ -637,18 +597,18 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct run run = {0};
   if (request->resume && request->json && request->output == NULL) {
-    return cli_usage_error(cli, &cmd_run, "--resume with --json needs the folder (-o)");
+    return cli_usage_error(cli, "--resume with --json needs the folder (-o)");
   }
   if (request->resume && request->force) {
-    return cli_usage_error(cli, &cmd_run, "--resume goes on, --force starts anew: choose one");
+    return cli_usage_error(cli, "--resume goes on, --force starts anew: choose one");
   }
   if (request->keep && (request->resume || request->force)) {
-    return cli_usage_error(cli, &cmd_run, "--keep takes a new folder, --resume and --force do not");
+    return cli_usage_error(cli, "--keep takes a new folder, --resume and --force do not");
   }
   if (cli->follower) { // no folder; its standard output leads nowhere
     request->json = true;
@@ -657,15 +617,9 @@ static int run(struct dea_cli *cli, void *user)
   if (request->sensitivity && request->studies.count > 0 && request->studies.count < STUDIES_MAX) {
     request->studies.at[request->studies.count++] = sensitivity_name;
   }
-  int code = cli_report(cli, run_all(cli, request, &run));
+  const dea_status status = run_all(cli, request, &run);
   release(cli, &run);
-  return code;
-}
-
-static bool on_ranks(const void *request)
-{
-  (void)request;
-  return true;
+  return status;
 }
 
 static const struct cli_option options[] = {
@@ -697,5 +651,5 @@ static const struct cli_option options[] = {
 const struct dea_command cmd_run = {
     .name = "run",
     .summary = "Solve a design: stretch, field, displacement and margins against voltage",
-    .on_ranks = on_ranks,
+    .on_ranks = true,
     CLI_RUN};

@@ -12,17 +12,14 @@ struct request {
       fit_life, explore;
 };
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_design_schema design;
   struct dea_record *bench = NULL; // owned
   dea_design_file_schema(&design);
   if (request->protocol || request->mapping) {
-    dea_status status = cli_bench_schema(cli->ctx, request->protocol, &bench);
-    if (status != DEA_OK) {
-      return cli_report(cli, status);
-    }
+    DEA_TRY(cli->ctx, cli_bench_schema(cli->ctx, request->protocol, &bench));
   }
   const struct dea_record *record = request->material        ? &dea_material_file_record
                                     : bench != NULL          ? bench
@@ -47,7 +44,7 @@ static int run(struct dea_cli *cli, void *user)
   }
   status = cli_print_text(status, &out);
   dea_free(cli->ctx, bench);
-  return cli_report(cli, status);
+  return status;
 }
 
 static const struct cli_option options[] = {

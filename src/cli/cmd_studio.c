@@ -1,10 +1,12 @@
 #define _GNU_SOURCE // environ, POSIX_SPAWN_SETSID
+#include "base/file.h"
 #include "base/write_file.h"
 #include "cli/cli.h"
 #include "studio/studio.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <spawn.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -19,16 +21,16 @@ struct request {
 
 extern char **environ;
 
-static int parse_port(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target)
+static dea_status parse_port(struct dea_cli *cli, const struct cli_option *option, const char *text,
+                             void *target)
 {
   double *port = target;
   char after;
   (void)option;
   return sscanf(text, "%lf%c", port, &after) == 1 && *port >= 0 && *port <= 65535 &&
                  *port == (int)*port
-             ? 0
-             : cli_usage_error(cli, command, "'%s' is no port; one from 1024 to 65535", text);
+             ? DEA_OK
+             : cli_usage_error(cli, "'%s' is no port; one from 1024 to 65535", text);
 }
 
 static void open_browser(const char *page)
@@ -49,17 +51,20 @@ static void open_browser(const char *page)
   posix_spawn_file_actions_destroy(&actions);
 }
 
-/* "cone.yaml" of "there/cone.yaml", whose folder goes to *folder; of a folder NULL. */
-static const char *split(const char *what, struct dea_text *folder)
+/* Goes to a folder, where runs name files, or to that of a design, whose name is *design then. */
+static dea_status enter(struct dea_context *ctx, const char *what, const char **design)
 {
-  const char *slash = what != NULL ? strrchr(what, '/') : NULL;
-  if (what == NULL || dea_path_is_folder(what)) {
-    dea_text_add(folder, "%s", what != NULL ? what : ".");
-    return NULL;
+  char folder[4096];
+  const char *name = dea_path_name(what);
+  *design = dea_path_is_folder(what) ? NULL : name;
+  if (*design != NULL && !dea_path_exists(what)) {
+    return dea_fail(ctx, DEA_E_IO, "there is no folder or design %s", what);
   }
-  dea_text_add(folder, "%.*s", slash != NULL ? (int)(slash - what) + 1 : 1,
-               slash != NULL ? what : ".");
-  return slash != NULL ? slash + 1 : what;
+  const int length = *design == NULL ? INT_MAX : (int)(name - what);
+  snprintf(folder, sizeof folder, "%.*s%s", length, what, length == 0 ? "." : "");
+  return chdir(folder) == 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_IO, "cannot open the folder %s: %s", folder, strerror(errno));
 }
 
 static dea_status serve(struct dea_cli *cli, const struct request *request,
@@ -95,40 +100,30 @@ static size_t choose(const struct cli_data_list *list, struct dea_studio_example
   return count;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
-  struct dea_text folder = {.ctx = cli->ctx};
   struct cli_data_list list;
   char program[4096] = "";
   struct dea_studio_options options = {.program = program, .port = (int)request->port};
-  options.open = split(request->what, &folder);
-  options.folder = ".";
+  if (readlink("/proc/self/exe", program, sizeof program - 1) <= 0) {
+    return dea_fail(cli->ctx, DEA_E_IO, "where this program lies is not known");
+  }
   dea_status status = cli_examples_find(cli->ctx, ".yaml", &list);
   struct dea_studio_example *examples = dea_alloc(cli->ctx, list.count, sizeof *examples);
-  if (readlink("/proc/self/exe", program, sizeof program - 1) <= 0) {
-    status = dea_fail(cli->ctx, DEA_E_IO, "where this program lies is not known");
+  status = examples != NULL ? status : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    status = enter(cli->ctx, request->what != NULL ? request->what : ".", &options.open);
   }
-  if (options.open != NULL && !dea_path_exists(request->what)) {
-    status = dea_fail(cli->ctx, DEA_E_IO, "there is no folder or design %s", request->what);
-  }
-  if (status == DEA_OK && !folder.failed &&
-      chdir(dea_text_get(&folder)) != 0) { // where runs name files
-    status = dea_fail(cli->ctx, DEA_E_IO, "cannot open the folder %s: %s", dea_text_get(&folder),
-                      strerror(errno));
-  }
-  if (status == DEA_OK && examples != NULL && !folder.failed) {
+  if (status == DEA_OK) {
     options.example_count = choose(&list, examples);
     options.examples = examples;
-    cli_watch(cli);
     setenv("NO_COLOR", "1", 1); // what runs say is shown in the page
     status = serve(cli, request, &options);
   }
-  const int code = cli_report(cli, folder.failed || examples == NULL ? DEA_E_MEMORY : status);
   dea_free(cli->ctx, examples);
   cli_data_free(cli->ctx, &list);
-  dea_text_free(&folder);
-  return code;
+  return status;
 }
 
 static const struct cli_option options[] = {
@@ -146,7 +141,4 @@ const struct dea_command cmd_studio = {
     .about = "Serves the page on this computer only (127.0.0.1), to who has the address that is "
              "printed, until Ctrl-C. All that it makes are files in the folder, and runs go on as "
              "long as it does; it has no way to the bench.",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

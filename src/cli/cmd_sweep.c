@@ -6,7 +6,6 @@
 #include "explore/slurm.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -19,37 +18,23 @@ struct request {
   struct dea_plot_format format; // of the figures
 };
 
-/* A number of up to 6 digits; *text goes behind it. */
-static bool parse_number(const char **text, size_t *out)
-{
-  size_t digits = strspn(*text, "0123456789");
-  if (digits == 0 || digits > 6) {
-    return false;
-  }
-  *out = strtoul(*text, NULL, 10);
-  *text += digits;
-  return true;
-}
-
-static int parse_shard(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target)
+static dea_status parse_shard(struct dea_cli *cli, const struct cli_option *option,
+                              const char *text, void *target)
 {
   struct dea_shard *shard = target;
-  const char *rest = text;
-  bool good = parse_number(&rest, &shard->part) && *rest++ == '/' &&
-              parse_number(&rest, &shard->parts) && *rest == '\0';
-  if (!good || shard->part < 1 || shard->part > shard->parts) {
-    return cli_usage_error(cli, command, "--%s: '%.20s' is no part of parts such as 2/8",
-                           option->name, text);
-  }
-  return 0;
+  char after;
+  const bool good = text[strspn(text, "0123456789/")] == '\0' &&
+                    sscanf(text, "%6zu/%6zu%c", &shard->part, &shard->parts, &after) == 2;
+  return good && shard->part >= 1 && shard->part <= shard->parts
+             ? DEA_OK
+             : cli_usage_error(cli, "--%s: '%.20s' is no part of parts such as 2/8", option->name,
+                               text);
 }
 
 static void print_report(const struct dea_sweep_report *report, const struct request *request)
 {
   if (report->at != NULL) { // a table by itself
     fputs(report->at, stdout);
-    fflush(stdout);
     return;
   }
   printf("designs: %zu of %zu are there", report->there, report->planned);
@@ -75,12 +60,11 @@ static void print_report(const struct dea_sweep_report *report, const struct req
     printf("written to %s%s\n", request->options.folder,
            part ? ": one part; --merge writes the tables" : " (cases.csv, cases.h5)");
   }
-  fflush(stdout);
 }
 
 /* Hands the sweep to Slurm. */
 static dea_status submit(struct dea_cli *cli, const struct request *request,
-                         const struct dea_case_key *case_key)
+                         const struct dea_design_space *space)
 {
   char array[32], merge[32], program[4096]; // the path that other computers have too
   const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
@@ -92,36 +76,34 @@ static dea_status submit(struct dea_cli *cli, const struct request *request,
       .parts = (size_t)request->slurm,
       .processes = request->processes > 0 ? (size_t)request->processes : 1,
   };
-  DEA_TRY(cli->ctx, dea_plan_check(case_key));
+  DEA_TRY(cli->ctx, dea_plan_check(space));
   DEA_TRY(cli->ctx, dea_slurm_submit(cli->ctx, &options, array, merge));
   printf("job %s: an array of %zu parts; job %s: the tables, after all of them, in %s\n", array,
          options.parts, merge, options.folder);
-  fflush(stdout);
   return DEA_OK;
 }
 
 static dea_status sweep(struct dea_cli *cli, const struct request *request)
 {
-  struct dea_case_key *case_key;
+  struct dea_design_space *space;
   struct dea_sweep_report report = {0};
-  DEA_TRY(cli->ctx, dea_case_key_read(cli->ctx, request->file, &case_key));
-  dea_status status = request->slurm > 0 ? submit(cli, request, case_key)
-                                         : dea_sweep_run(case_key, &request->options, &report);
+  DEA_TRY(cli->ctx, dea_design_space_read(cli->ctx, request->file, &space));
+  dea_status status = request->slurm > 0 ? submit(cli, request, space)
+                                         : dea_sweep_run(space, &request->options, &report);
   if (report.planned > 0) {
     print_report(&report, request);
   }
   dea_free(cli->ctx, report.at);
-  dea_case_key_destroy(case_key);
+  dea_design_space_destroy(space);
   return status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
-  struct dea_text folder = {.ctx = cli->ctx};
   if (request->options.force &&
       (request->options.merge || request->slurm > 0 || request->options.shard.parts > 1)) {
-    return cli_usage_error(cli, &cmd_sweep,
+    return cli_usage_error(cli,
                            "--force throws away the cases of all parts: it does not go with %s; "
                            "remove part-*.csv of the folder before the first part begins",
                            request->options.merge ? "--merge"
@@ -132,11 +114,8 @@ static int run(struct dea_cli *cli, void *user)
   request->options.at = request->at.at;
   request->options.at_count = request->at.count;
   request->options.processes = cli_processes(request->processes);
-  request->options.folder =
-      cli_output_name(request->options.folder, request->file, "sweep", &folder);
-  int code = cli_report(cli, request->options.folder == NULL ? DEA_E_MEMORY : sweep(cli, request));
-  dea_text_free(&folder);
-  return code;
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->file, "sweep", &request->options.folder));
+  return sweep(cli, request);
 }
 
 static const struct request defaults = {.options = {.shard = {1, 1}},

@@ -72,7 +72,7 @@ static void add_help(struct dea_cli *cli, struct dea_text *out, int margin,
   const struct cli_kind_info *kind = &cli_kinds[option->kind];
   struct dea_text help = {.ctx = out->ctx}, list = {.ctx = out->ctx};
   dea_text_add(&help, "%s", option->help);
-  if (kind->few && kind->list(cli, &list) == DEA_OK) {
+  if (kind->few && cli_kind_list(cli, kind, &list) == DEA_OK) {
     const char *separator = ": ";
     for (const char *word = dea_text_get(&list); *word != '\0'; word += strcspn(word, "\n") + 1) {
       dea_text_add(&help, "%s%.*s", separator, (int)strcspn(word, "\n"), word);

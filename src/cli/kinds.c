@@ -83,18 +83,11 @@ static dea_status list_keys(struct dea_cli *cli, struct dea_text *out)
   return DEA_OK;
 }
 
-static dea_status list_formats(struct dea_cli *cli, struct dea_text *out)
+dea_status cli_kind_list(struct dea_cli *cli, const struct cli_kind_info *kind,
+                         struct dea_text *out)
 {
-  (void)cli;
-  dea_text_add(out, "svg\npdf\npng\n");
-  return DEA_OK;
-}
-
-static dea_status list_shells(struct dea_cli *cli, struct dea_text *out)
-{
-  (void)cli;
-  dea_text_add(out, "bash\nman\n");
-  return DEA_OK;
+  dea_text_add(out, "%s", kind->words != NULL ? kind->words : "");
+  return kind->list != NULL ? kind->list(cli, out) : DEA_OK;
 }
 
 const struct cli_kind_info cli_kinds[CLI_KINDS] = {
@@ -106,13 +99,13 @@ const struct cli_kind_info cli_kinds[CLI_KINDS] = {
     [CLI_COMMAND] = {"commands", .list = list_commands},
     [CLI_EXAMPLE] = {"examples", .list = list_examples},
     [CLI_FIGURE] = {"figures", .list = list_figures},
-    [CLI_FORMAT] = {"formats", .few = true, .list = list_formats},
+    [CLI_FORMAT] = {"formats", .few = true, .words = "svg\npdf\npng\n"},
     [CLI_IMPORTER] = {"importers", .few = true, .list = cli_bench_importers},
     [CLI_KEY] = {"keys", .list = list_keys},
     [CLI_MATERIAL] = {"materials", .list = list_materials},
     [CLI_MODEL] = {"models", .few = true, .list = list_models},
     [CLI_PROTOCOL_KEY] = {"protocol-keys", .list = cli_bench_protocol_keys},
     [CLI_QUANTITY] = {"quantities", .list = list_quantities},
-    [CLI_SHELL] = {"shells", .few = true, .list = list_shells},
+    [CLI_SHELL] = {"shells", .few = true, .words = "bash\nman\n"},
     [CLI_STUDY] = {"studies", .few = true, .list = list_studies},
 };

@@ -70,45 +70,38 @@ static const struct dea_command *find_command(const char *name)
   return NULL;
 }
 
-/* 0, or the exit code where a command is not for several ranks: the first would wait for others. */
-static int check_ranks(const struct dea_cli *cli, const struct dea_command *command,
-                       const void *request)
+/* DEA_E_USAGE where the command is not for several ranks: the first would wait for others. */
+static dea_status check_ranks(const struct dea_cli *cli)
 {
-  if (cli->ranks == 1 || (command->on_ranks != NULL && command->on_ranks(request))) {
-    return 0;
-  }
-  fprintf(stderr,
-          "dea: error: dea %s runs in one process, and mpirun has started %d; use mpirun for "
-          "one large case of dea run, -j for many cases of dea sweep and dea optimise\n",
-          command->name, cli->ranks);
-  return dea_status_exit_code(DEA_E_USAGE);
+  return cli->ranks == 1 || cli->command->on_ranks
+             ? DEA_OK
+             : dea_fail(cli->ctx, DEA_E_USAGE,
+                        "dea %s runs in one process, and mpirun has started %d; use mpirun for "
+                        "one large case of dea run, -j for many cases of dea sweep and dea "
+                        "optimise",
+                        cli->command->name, cli->ranks);
 }
 
-static int run_command(struct dea_cli *cli, int argc, char **argv)
+static dea_status run_command(struct dea_cli *cli, int argc, char **argv)
 {
-  const struct dea_command *command = find_command(argv[0]);
-  if (command == NULL) {
-    return dea_status_exit_code(DEA_E_USAGE);
-  }
+  const struct dea_command *command = cli->command;
   if (cli->help) {
     struct dea_text usage = {.ctx = cli->ctx};
     dea_text_add(&usage, "%s\n\n", command->summary);
     cli_add_usage(cli, command, &usage);
-    return cli_report(cli, cli_print_text(DEA_OK, &usage));
+    return cli_print_text(DEA_OK, &usage);
   }
   cli_watch(cli);
-  char *request = dea_alloc(cli->ctx, 1, command->request_size);
-  if (request == NULL) {
-    return cli_report(cli, DEA_E_MEMORY);
-  }
+  void *request = dea_alloc(cli->ctx, 1, command->request_size);
+  DEA_TRY_MEMORY(request != NULL);
   if (command->defaults != NULL) {
     memcpy(request, command->defaults, command->request_size);
   }
-  int code = cli_parse(cli, command, argc, argv, request);
-  code = code != 0 ? code : check_ranks(cli, command, request);
-  code = code != 0 ? code : command->run(cli, request);
+  dea_status status = cli_parse(cli, argc, argv, request);
+  status = status == DEA_OK ? check_ranks(cli) : status;
+  status = status == DEA_OK ? command->run(cli, request) : status;
   dea_free(cli->ctx, request);
-  return code;
+  return status;
 }
 
 /* Standard files that the caller has closed become /dev/null; else the first result file would get
@@ -213,7 +206,9 @@ int main(int argc, char **argv)
   } else if (strcmp(argv[1], "--version") == 0) {
     printf("dea %s\n", DEA_VERSION);
   } else {
-    code = run_command(&cli, argc - 1, argv + 1);
+    cli.command = find_command(argv[1]);
+    code = cli.command == NULL ? dea_status_exit_code(DEA_E_USAGE)
+                               : cli_report(&cli, run_command(&cli, argc - 1, argv + 1));
   }
   dea_text_free(&line);
   dea_context_destroy(cli.ctx);

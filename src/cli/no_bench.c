@@ -27,10 +27,10 @@ struct request {
   struct cli_words words;
 };
 
-static int run(struct dea_cli *cli, void *request)
+static dea_status run(struct dea_cli *cli, void *request)
 {
   (void)request;
-  return cli_report(cli, fail(cli->ctx));
+  return fail(cli->ctx);
 }
 
 static const struct cli_option options[] = {

@@ -20,67 +20,60 @@ const struct cli_option cli_common_options[] = {
 #undef AT
     {0}};
 
-enum { FIRST_LONG = 256 }; // above all letters: what getopt_long answers for the first row
-
-static const struct cli_option *find_letter(const struct dea_command *command, int letter)
+const struct cli_option *cli_argument_of(const struct dea_command *command)
 {
   const struct cli_option *option = command->options;
-  while (option->help != NULL && option->letter != letter) {
+  while (option->help != NULL && option->name != NULL) {
     option++;
   }
   return option;
 }
 
 /* Puts one value where it belongs. */
-static int parse_option(struct dea_cli *cli, const struct dea_command *command,
-                        const struct cli_option *option, const char *text, void *request)
+static dea_status parse_option(struct dea_cli *cli, const struct cli_option *option,
+                               const char *text, void *request)
 {
   void *target = (char *)request + option->target;
   if (option->take != NULL) {
-    return option->take(cli, command, option, text, target);
+    return option->take(cli, option, text, target);
   }
   if (option->kind == CLI_FLAG) {
     *(bool *)target = true;
   } else if (option->most > 1) {
     struct cli_words *words = target;
     if (words->count == option->most) {
-      return cli_usage_error(cli, command, "%s", option->too_many);
+      return cli_usage_error(cli, "%s", option->too_many);
     }
     words->at[words->count++] = text;
   } else {
     *(const char **)target = text;
   }
-  return 0;
+  return DEA_OK;
 }
 
 /* The words that are no options. */
-static int parse_arguments(struct dea_cli *cli, const struct dea_command *command, int count,
-                           char **words, void *request)
+static dea_status parse_arguments(struct dea_cli *cli, int count, char **words, void *request)
 {
-  const struct cli_option *option = command->options;
-  while (option->help != NULL && option->name != NULL) {
-    option++;
-  }
-  int most = option->help == NULL ? 0 : option->most > 1 ? (int)option->most : 1, code = 0;
+  const struct cli_option *option = cli_argument_of(cli->command);
+  const int most = option->help == NULL ? 0 : option->most > 1 ? (int)option->most : 1;
   if (count < (int)option->least) {
-    return cli_usage_error(cli, command, "%s", option->too_few);
+    return cli_usage_error(cli, "%s", option->too_few);
   }
   if (count > most) {
     return option->too_many != NULL
-               ? cli_usage_error(cli, command, "%s", option->too_many)
-               : cli_usage_error(cli, command, "'%s' is not expected here", words[most]);
+               ? cli_usage_error(cli, "%s", option->too_many)
+               : cli_usage_error(cli, "'%s' is not expected here", words[most]);
   }
-  for (int i = 0; i < count && code == 0; i++) {
-    code = parse_option(cli, command, option, words[i], request);
+  for (int i = 0; i < count; i++) {
+    DEA_TRY(cli->ctx, parse_option(cli, option, words[i], request));
   }
-  return code;
+  return DEA_OK;
 }
 
 /* Usage error where two are given of options that exclude each other. */
-static int check_exclusions(struct dea_cli *cli, const struct dea_command *command,
-                            const bool given[CLI_OPTIONS_MAX])
+static dea_status check_exclusions(struct dea_cli *cli, const bool given[CLI_OPTIONS_MAX])
 {
-  const struct cli_option *options = command->options;
+  const struct cli_option *options = cli->command->options;
   for (size_t first = 0, i = 0; options[first].help != NULL; first = i) {
     size_t count = 0;
     char names[128] = "";
@@ -97,10 +90,10 @@ static int check_exclusions(struct dea_cli *cli, const struct dea_command *comma
       }
     }
     if (count > 1) {
-      return cli_usage_error(cli, command, "%s exclude each other", names);
+      return cli_usage_error(cli, "%s exclude each other", names);
     }
   }
-  return 0;
+  return DEA_OK;
 }
 
 /* The common option of a letter, or of a name; NULL: none. */
@@ -162,87 +155,98 @@ static dea_status check_written(struct dea_cli *cli, int argc, char **argv, int 
   return DEA_OK;
 }
 
-int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, char **argv,
-              void *request)
+enum { FIRST_LONG = 256 }; // above all letters: what getopt_long answers for the first row
+
+/* The row that getopt_long has found; a usage error, and NULL, where that is wrong. */
+static const struct cli_option *find_option(struct dea_cli *cli, int found, const char *word)
 {
-  struct option longs[CLI_OPTIONS_MAX + 1] = {{0}};
-  bool given[CLI_OPTIONS_MAX] = {false};
-  char letters[2 * CLI_OPTIONS_MAX + 2] = ":";
-  size_t long_count = 0, letter_count = 1;
-  for (const struct cli_option *o = command->options; o->help != NULL; o++) {
-    bool flag = o->kind == CLI_FLAG;
-    if (o->name != NULL) {
-      longs[long_count++] = (struct option){o->name, flag ? no_argument : required_argument, NULL,
-                                            FIRST_LONG + (int)(o - command->options)};
-    }
-    if (o->letter != 0) {
-      letters[letter_count++] = o->letter;
-      letters[letter_count] = ':';
-      letter_count += flag ? 0 : 1;
-    }
+  const struct cli_option *option = cli->command->options;
+  if (found == '?' && optopt != 0 && optopt < FIRST_LONG) { // a letter, perhaps one of several
+    cli_usage_error(cli,
+                    find_common((char)optopt, NULL) != NULL
+                        ? "'-%c' stands alone, not with letters of other options"
+                        : "there is no option '-%c'",
+                    optopt);
+    return NULL;
   }
-  letters[letter_count] = '\0';
-  int found, code = 0;
-  opterr = 0;
-  while (code == 0 && (found = getopt_long(argc, argv, letters, longs, NULL)) != -1) {
-    if (found == '?' && optopt != 0 && optopt < FIRST_LONG) { // a letter, perhaps one of several
-      return cli_usage_error(cli, command,
-                             find_common((char)optopt, NULL) != NULL
-                                 ? "'-%c' stands alone, not with letters of other options"
-                                 : "there is no option '-%c'",
-                             optopt);
-    }
-    if (found == ':' || found == '?') {
-      return cli_usage_error(cli, command,
-                             found == ':' ? "option '%s' needs a value" : "there is no option '%s'",
-                             argv[optind - 1]);
-    }
-    const struct cli_option *option =
-        found >= FIRST_LONG ? &command->options[found - FIRST_LONG] : find_letter(command, found);
-    if (option->kind != CLI_FLAG && optarg[0] == '\0') { // "$NAME" of a shell that knows no NAME
-      return cli_usage_error(cli, command, "option '--%s' has an empty value", option->name);
-    }
-    given[option - command->options] = true;
-    code = parse_option(cli, command, option, optarg, request);
-    if (option->kind == CLI_NEW_FILE && code == 0) {
-      dea_status status = check_written(cli, argc, argv, optind - 1, optarg);
-      code = status == DEA_OK ? 0 : cli_report(cli, status);
-    }
+  if (found == ':' || found == '?') {
+    cli_usage_error(cli, found == ':' ? "option '%s' needs a value" : "there is no option '%s'",
+                    word);
+    return NULL;
   }
-  code = code != 0 ? code : check_exclusions(cli, command, given);
-  return code != 0 ? code : parse_arguments(cli, command, argc - optind, argv + optind, request);
+  while (found < FIRST_LONG && option->letter != found) {
+    option++;
+  }
+  option += found < FIRST_LONG ? 0 : found - FIRST_LONG;
+  if (option->kind != CLI_FLAG && optarg[0] == '\0') { // "$NAME" of a shell that knows no NAME
+    cli_usage_error(cli, "option '--%s' has an empty value", option->name);
+    return NULL;
+  }
+  return option;
 }
 
-int cli_parse_override(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target)
+dea_status cli_parse(struct dea_cli *cli, int argc, char **argv, void *request)
+{
+  struct option longs[CLI_OPTIONS_MAX + 1] = {{0}}, *next = longs;
+  bool given[CLI_OPTIONS_MAX] = {false};
+  char letters[2 * CLI_OPTIONS_MAX + 2] = ":", *letter = letters + 1;
+  const struct cli_option *options = cli->command->options;
+  for (const struct cli_option *o = options; o->help != NULL; o++) {
+    const bool flag = o->kind == CLI_FLAG;
+    if (o->name != NULL) {
+      *next++ = (struct option){o->name, flag ? no_argument : required_argument, NULL,
+                                FIRST_LONG + (int)(o - options)};
+    }
+    if (o->letter != 0) {
+      letter += sprintf(letter, "%c%s", o->letter, flag ? "" : ":");
+    }
+  }
+  opterr = 0;
+  for (int found; (found = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
+    const struct cli_option *option = find_option(cli, found, argv[optind - 1]);
+    if (option == NULL) {
+      return DEA_E_USAGE;
+    }
+    given[option - options] = true;
+    DEA_TRY(cli->ctx, parse_option(cli, option, optarg, request));
+    if (option->kind == CLI_NEW_FILE) {
+      DEA_TRY(cli->ctx, check_written(cli, argc, argv, optind - 1, optarg));
+    }
+  }
+  DEA_TRY(cli->ctx, check_exclusions(cli, given));
+  return parse_arguments(cli, argc - optind, argv + optind, request);
+}
+
+dea_status cli_parse_override(struct dea_cli *cli, const struct cli_option *option,
+                              const char *text, void *target)
 {
   struct cli_overrides *overrides = target;
   char *equals = strchr(text, '=');
   if (equals == NULL || equals == text || overrides->count == CLI_OVERRIDES_MAX) {
-    return cli_usage_error(cli, command, "--%s takes KEY=VALUE, not '%s'", option->name, text);
+    return cli_usage_error(cli, "--%s takes KEY=VALUE, not '%s'", option->name, text);
   }
   *equals = '\0'; // argv is ours
   overrides->at[overrides->count++] = (struct dea_override){.key = text, .value = equals + 1};
-  return 0;
+  return DEA_OK;
 }
 
-int cli_parse_quantity(struct dea_cli *cli, const struct dea_command *command,
-                       const struct cli_option *option, const char *text, void *target)
+dea_status cli_parse_quantity(struct dea_cli *cli, const struct cli_option *option,
+                              const char *text, void *target)
 {
   char why[DEA_WHY_SIZE];
   double *value = target;
   if (!dea_units_read(cli->ctx, text, option->measure, value, why)) {
-    return why[0] == '\0' ? cli_report(cli, dea_context_status(cli->ctx))
-                          : cli_usage_error(cli, command, "--%s: %s", option->name, why);
+    return why[0] == '\0' ? dea_context_status(cli->ctx)
+                          : cli_usage_error(cli, "--%s: %s", option->name, why);
   }
   return *value > 0.0 || !option->positive
-             ? 0
-             : cli_usage_error(cli, command, "--%s '%s': must be more than 0, such as %s",
-                               option->name, text, option->measure.example);
+             ? DEA_OK
+             : cli_usage_error(cli, "--%s '%s': must be more than 0, such as %s", option->name,
+                               text, option->measure.example);
 }
 
-int cli_parse_formats(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target)
+dea_status cli_parse_formats(struct dea_cli *cli, const struct cli_option *option, const char *text,
+                             void *target)
 {
   struct dea_plot_format *format = target;
   (void)option;
@@ -255,18 +259,18 @@ int cli_parse_formats(struct dea_cli *cli, const struct dea_command *command,
                   : strncmp(word, "png", n) == 0 ? &format->png
                                                  : NULL;
     if (which == NULL) {
-      return cli_usage_error(cli, command, "'%s' is not a list of svg, pdf, png", text);
+      return cli_usage_error(cli, "'%s' is not a list of svg, pdf, png", text);
     }
     *which = true;
     word += n;
     if (*word == '\0') {
-      return 0;
+      return DEA_OK;
     }
   }
 }
 
-int cli_parse_width(struct dea_cli *cli, const struct dea_command *command,
-                    const struct cli_option *option, const char *text, void *target)
+dea_status cli_parse_width(struct dea_cli *cli, const struct cli_option *option, const char *text,
+                           void *target)
 {
   struct dea_plot_format *format = target;
   const char *end;
@@ -274,10 +278,10 @@ int cli_parse_width(struct dea_cli *cli, const struct dea_command *command,
   (void)option;
   if (end == text || (*end != '\0' && strcmp(end, "mm") != 0 && strcmp(end, " mm") != 0) ||
       !(width_mm >= 40.0) || !(width_mm <= 400.0)) {
-    return cli_usage_error(cli, command, "'%s' is not a width of 40 to 400 mm", text);
+    return cli_usage_error(cli, "'%s' is not a width of 40 to 400 mm", text);
   }
   format->width_m = 1e-3 * width_mm;
-  return 0;
+  return DEA_OK;
 }
 
 bool cli_read_share(const char *text, double *share)
@@ -294,44 +298,50 @@ bool cli_read_share(const char *text, double *share)
   return *end == '\0';
 }
 
-const char *cli_output_name(const char *given, const char *file, const char *outcome,
-                            struct dea_text *made)
+dea_status cli_keep_text(struct dea_text *text, const char **out)
 {
-  size_t length;
-  const char *name = dea_path_stem(file, &length);
-  if (given != NULL) {
-    return given;
-  }
-  dea_text_add(made, "%.*s.%s", (int)length, name, outcome);
-  return made->failed ? NULL : dea_text_get(made);
+  *out = text->failed ? NULL : dea_intern(text->ctx, dea_text_get(text));
+  dea_text_free(text);
+  return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
-int cli_with_device(struct dea_cli *cli, const char *file, const struct cli_overrides *overrides,
-                    cli_device_work *work, const void *request)
+dea_status cli_output_name(struct dea_cli *cli, const char *file, const char *ending,
+                           const char **name)
+{
+  size_t length;
+  const char *stem = dea_path_stem(file, &length);
+  struct dea_text made = {.ctx = cli->ctx};
+  if (*name != NULL) {
+    return DEA_OK;
+  }
+  dea_text_add(&made, "%.*s.%s", (int)length, stem, ending);
+  return cli_keep_text(&made, name);
+}
+
+dea_status cli_with_device(struct dea_cli *cli, const char *file,
+                           const struct cli_overrides *overrides, cli_device_work *work,
+                           const void *request)
 {
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
   dea_status status = dea_design_read(cli->ctx, file, overrides->at, overrides->count, &design);
   status = status == DEA_OK ? dea_device_build(cli->ctx, design, &device) : status;
   status = status == DEA_OK ? work(cli, request, design, device) : status;
-  fflush(stdout);
-  const int code = cli_report(cli, status);
   dea_device_destroy(cli->ctx, device);
   dea_design_destroy(cli->ctx, design);
-  return code;
+  return status;
 }
 
-int cli_parse_processes(struct dea_cli *cli, const struct dea_command *command,
-                        const struct cli_option *option, const char *text, void *target)
+dea_status cli_parse_processes(struct dea_cli *cli, const struct cli_option *option,
+                               const char *text, void *target)
 {
   char *end;
   const double count = strtod(text, &end);
   if (*end != '\0' || !(count >= 1 && count <= 256) || count != floor(count)) {
-    return cli_usage_error(cli, command, "--%s: '%.20s' is no number from 1 to 256", option->name,
-                           text);
+    return cli_usage_error(cli, "--%s: '%.20s' is no number from 1 to 256", option->name, text);
   }
   *(double *)target = count;
-  return 0;
+  return DEA_OK;
 }
 
 size_t cli_processes(double given)

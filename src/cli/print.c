@@ -102,29 +102,31 @@ static void print_findings(struct dea_cli *cli)
 
 int cli_report(struct dea_cli *cli, dea_status status)
 {
+  const bool failed = status != DEA_OK && !cli->refused;
+  fflush(stdout);
   cli_progress_clear(cli);
   print_findings(cli);
   bool said = dea_finding_count(cli->ctx, DEA_ERROR) > 0 && status == DEA_E_DESIGN;
-  if (status != DEA_OK && !said) {
+  if (failed && !said) {
     const char *message = dea_context_message(cli->ctx);
     print_line(cli, NULL, DEA_ERROR, message[0] != '\0' ? message : dea_status_message(status));
   }
-  if (status != DEA_OK && cli->verbose) {
+  if (failed && cli->verbose) {
     fprintf(stderr, "dea: in %s\n", dea_context_chain(cli->ctx));
   }
-  dea_finding_clear(cli->ctx);
   return dea_status_exit_code(status);
 }
 
-int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, const char *format, ...)
+dea_status cli_usage_error(struct dea_cli *cli, const char *format, ...)
 {
   va_list args;
   va_start(args, format);
-  fprintf(stderr, "dea %s: %s: ", command->name, severity_text(DEA_ERROR, cli->colour));
+  fprintf(stderr, "dea %s: %s: ", cli->command->name, severity_text(DEA_ERROR, cli->colour));
   vfprintf(stderr, format, args);
-  fprintf(stderr, "\nTry 'dea %s --help'.\n", command->name);
+  fprintf(stderr, "\nTry 'dea %s --help'.\n", cli->command->name);
   va_end(args);
-  return dea_status_exit_code(DEA_E_USAGE);
+  cli->refused = true;
+  return DEA_E_USAGE;
 }
 
 void cli_print_json(json_t *json)

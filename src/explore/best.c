@@ -15,12 +15,13 @@
 
 struct work {
   struct dea_context *ctx;
-  const struct dea_case_key *case_key;
+  const struct dea_design_space *space;
   const struct dea_optimise_options *options;
   struct dea_optimise_report *report;
   struct dea_store *store;
   struct dea_evaluator evaluator;
   struct dea_search search;
+  struct dea_limit sides[2 * DEA_EXPLORE_LIMITS_MAX]; // of limits, each with one only
   struct dea_arena memory;
   double *scatter; // [scattered][params]; NULL: none
 };
@@ -28,55 +29,38 @@ struct work {
 // What is sought ----------------------------------------------------------------------------------
 
 /* Value of a column at the last voltage. */
-static double last_value(const struct dea_case_key *case_key, int column, const double *q)
+static double last_value(const struct dea_design_space *space, int column, const double *q)
 {
-  return q[(case_key->voltage_count - 1) * case_key->quantity_count + (size_t)column];
+  return q[(space->voltage_count - 1) * space->quantity_count + (size_t)column];
 }
 
-static double sign_of(const struct dea_case_key *case_key, size_t k)
+static double sign_of(const struct dea_design_space *space, size_t k)
 {
-  return case_key->file->objectives[k].goal.value == DEA_MOST ? -1 : 1;
+  return space->file->objectives[k].goal.value == DEA_MOST ? -1 : 1;
 }
 
 static double objective(const void *user, size_t k, const double *q)
 {
-  const struct dea_case_key *case_key = user;
-  return sign_of(case_key, k) * last_value(case_key, case_key->objectives[k], q);
-}
-
-/* Sides of limits, counted: the limit of that number with one side only. */
-static bool side_of(const struct dea_case_key *case_key, size_t side, struct dea_limit *out)
-{
-  for (size_t l = 0; l < case_key->limit_count; l++) {
-    const struct dea_limit *limit = &case_key->limits[l];
-    if (!isnan(limit->above) && side-- == 0) {
-      *out = (struct dea_limit){limit->column, limit->above, NAN};
-      return true;
-    }
-    if (!isnan(limit->below) && side-- == 0) {
-      *out = (struct dea_limit){limit->column, NAN, limit->below};
-      return true;
-    }
-  }
-  return false;
+  const struct dea_design_space *space = ((const struct work *)user)->space;
+  return sign_of(space, k) * last_value(space, space->objectives[k], q);
 }
 
 static double margin(const void *user, size_t side, const double *q)
 {
-  struct dea_limit limit;
-  return side_of(user, side, &limit) ? dea_limit_margin(user, &limit, q) : NAN;
+  const struct work *w = user;
+  return dea_limit_margin(w->space, &w->sides[side], q);
 }
 
 /* Shifts of scattered designs, the first of them none. */
 static dea_status build_scatter(struct work *w)
 {
-  const struct dea_case_key *case_key = w->case_key;
-  const size_t n = case_key->variable_count;
+  const struct dea_design_space *space = w->space;
+  const size_t n = space->variable_count;
   size_t scattering = 0;
   for (size_t j = 0; j < n; j++) {
-    scattering += case_key->variables[j].scatter > 0 ? 1U : 0U;
+    scattering += space->variables[j].scatter > 0 ? 1U : 0U;
   }
-  w->report->scattered = scattering > 0 ? (size_t)case_key->file->robust.samples.si : 1;
+  w->report->scattered = scattering > 0 ? (size_t)space->file->robust.samples.si : 1;
   if (scattering == 0) {
     return DEA_OK;
   }
@@ -85,13 +69,13 @@ static dea_status build_scatter(struct work *w)
   double *few = dea_arena_alloc(&w->memory, count * scattering, sizeof *few);
   double *u = dea_arena_alloc(&w->memory, count * n, sizeof *u);
   DEA_TRY_MEMORY(!w->memory.failed);
-  dea_sample_sobol(scattering, count - 1, (unsigned long long)case_key->file->seed.si, few);
+  dea_sample_sobol(scattering, count - 1, (unsigned long long)space->file->seed.si, few);
   for (size_t i = 0, d = 0; i < (count - 1) * n; i++) { // what does not scatter: in its middle
-    u[i] = case_key->variables[i % n].scatter > 0 ? few[d++] : 0.5;
+    u[i] = space->variables[i % n].scatter > 0 ? few[d++] : 0.5;
   }
-  dea_sample_correlate(case_key->file, count - 1, u);
+  dea_sample_correlate(space->file, count - 1, u);
   for (size_t i = n; i < count * n; i++) {
-    const struct dea_variable *variable = &case_key->variables[i % n];
+    const struct dea_variable *variable = &space->variables[i % n];
     const bool normal = variable->text->distribution.value == DEA_NORMAL;
     const double at = u[i - n];
     w->scatter[i] = variable->scatter * (normal ? dea_normal_quantile(at) : 2 * at - 1);
@@ -112,10 +96,9 @@ static double begin_of(const struct dea_variable *variable)
 
 static void fill_search(struct work *w)
 {
-  const struct dea_case_key *case_key = w->case_key;
-  const struct dea_explore_file *file = case_key->file;
+  const struct dea_design_space *space = w->space;
+  const struct dea_explore_file *file = space->file;
   const struct dea_explore_robust *robust = &file->robust;
-  struct dea_limit limit;
   struct dea_search *search = &w->search;
   *search = (struct dea_search){
       .ctx = w->ctx,
@@ -124,7 +107,7 @@ static void fill_search(struct work *w)
       .processes = w->options->processes,
       .objective = objective,
       .margin = margin,
-      .user = case_key,
+      .user = w,
       .objective_count = file->objective_count,
       .method = (enum dea_method)file->method.value,
       .starts = (size_t)file->starts.si,
@@ -136,11 +119,17 @@ static void fill_search(struct work *w)
       .quantile = robust->quantile.origin != DEA_ABSENT ? robust->quantile.si : NAN,
       .spread = robust->spread.si,
       .replaced = w->report->replaced};
-  while (side_of(case_key, search->limit_count, &limit)) {
-    search->limit_count++;
+  for (size_t l = 0; l < space->limit_count; l++) {
+    const struct dea_limit *limit = &space->limits[l];
+    if (!isnan(limit->above)) {
+      w->sides[search->limit_count++] = (struct dea_limit){limit->column, limit->above, NAN};
+    }
+    if (!isnan(limit->below)) {
+      w->sides[search->limit_count++] = (struct dea_limit){limit->column, NAN, limit->below};
+    }
   }
-  for (size_t j = 0; j < case_key->variable_count; j++) {
-    const struct dea_variable *variable = &case_key->variables[j];
+  for (size_t j = 0; j < space->variable_count; j++) {
+    const struct dea_variable *variable = &space->variables[j];
     search->start[j] = begin_of(variable);
     search->low[j] = variable->low;
     search->high[j] = variable->high;
@@ -160,15 +149,15 @@ static bool is_start_excluded(const struct dea_variable *variable)
 /* Says limits of one quantity that exclude each other; each by itself is checked as it is read. */
 static dea_status check_limits(const struct work *w)
 {
-  const struct dea_case_key *case_key = w->case_key;
-  for (size_t l = 0; l < case_key->limit_count; l++) {
-    for (size_t k = 0; k < case_key->limit_count; k++) {
-      const struct dea_limit *low = &case_key->limits[l], *high = &case_key->limits[k];
+  const struct dea_design_space *space = w->space;
+  for (size_t l = 0; l < space->limit_count; l++) {
+    for (size_t k = 0; k < space->limit_count; k++) {
+      const struct dea_limit *low = &space->limits[l], *high = &space->limits[k];
       if (k != l && low->column == high->column && low->above >= high->below) {
-        const struct dea_explore_limit *text = case_key->file->limits;
+        const struct dea_explore_limit *text = space->file->limits;
         DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, text[k > l ? k : l].quantity.location,
                                         "%s cannot be above %s and below %s",
-                                        case_key->quantities[low->column].key, text[l].above.text,
+                                        space->quantities[low->column].key, text[l].above.text,
                                         text[k].below.text));
       }
     }
@@ -178,15 +167,15 @@ static dea_status check_limits(const struct work *w)
 
 static dea_status check(const struct work *w)
 {
-  const struct dea_case_key *case_key = w->case_key;
+  const struct dea_design_space *space = w->space;
   const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
-  const struct dea_location file = {case_key->file->head.file, 1, 1};
+  const struct dea_location file = {space->file->head.file, 1, 1};
   double combinations = 1;
-  if (case_key->file->objective_count == 0) {
+  if (space->file->objective_count == 0) {
     DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, file, "objectives: say what is wanted"));
   }
-  for (size_t j = 0; j < case_key->variable_count; j++) {
-    const struct dea_variable *variable = &case_key->variables[j];
+  for (size_t j = 0; j < space->variable_count; j++) {
+    const struct dea_variable *variable = &space->variables[j];
     const struct dea_label *name = &variable->text->text.name;
     combinations *= variable->value_count > 0 ? (double)variable->value_count : 1;
     if (variable->text->distribution.value == DEA_LOGNORMAL ||
@@ -210,8 +199,7 @@ static dea_status check(const struct work *w)
   }
   return dea_finding_count(w->ctx, DEA_ERROR) == errors
              ? DEA_OK
-             : dea_fail(w->ctx, DEA_E_DESIGN, "'%s' cannot be optimised",
-                        case_key->file->head.file);
+             : dea_fail(w->ctx, DEA_E_DESIGN, "'%s' cannot be optimised", space->file->head.file);
 }
 
 // Files -------------------------------------------------------------------------------------------
@@ -219,15 +207,15 @@ static dea_status check(const struct work *w)
 /* All evaluations in their order, as a plan. */
 static dea_status write_cases(struct work *w)
 {
-  const size_t n = w->case_key->variable_count, count = dea_store_count(w->store);
-  struct dea_plan plan = {.p = dea_arena_alloc(&w->memory, n * count, sizeof(double)),
+  const size_t count = dea_store_count(w->store);
+  struct dea_plan plan = {.cases = dea_arena_alloc(&w->memory, count, sizeof(struct dea_case *)),
                           .count = count,
                           .samples = count};
-  DEA_TRY_MEMORY(plan.p != NULL);
+  DEA_TRY_MEMORY(plan.cases != NULL);
   for (size_t i = 0; i < count; i++) {
-    memcpy(plan.p + i * n, dea_store_get(w->store, i)->p, n * sizeof(double));
+    plan.cases[i] = dea_store_get(w->store, i);
   }
-  return dea_sweep_write(w->case_key, &plan, w->store, &w->options->format, w->options->folder);
+  return dea_sweep_write(w->space, &plan, &w->options->format, w->options->folder);
 }
 
 /* A variable this near to a bound, as a share of its range, is at it. */
@@ -247,10 +235,10 @@ static void name_best(size_t number, char name[BEST_SIZE])
   }
 }
 
-const char *dea_optimum_bound(const struct dea_case_key *case_key, const struct dea_optimum *best,
+const char *dea_optimum_bound(const struct dea_design_space *space, const struct dea_optimum *best,
                               size_t variable)
 {
-  const struct dea_variable *of = &case_key->variables[variable];
+  const struct dea_variable *of = &space->variables[variable];
   const double near = bound_share * (of->high - of->low);
   return of->value_count > 0                    ? NULL
          : best->p[variable] <= of->low + near  ? "lower"
@@ -261,30 +249,25 @@ const char *dea_optimum_bound(const struct dea_case_key *case_key, const struct 
 /* The design of an optimum, of that number. */
 static dea_status write_design(const struct work *w, const struct dea_optimum *best, size_t number)
 {
-  const struct dea_case_key *case_key = w->case_key;
+  const struct dea_design_space *space = w->space;
   struct dea_text text = {.ctx = w->ctx};
   char name[BEST_SIZE], label[DEA_NAME_SIZE];
   name_best(number, name);
-  snprintf(label, sizeof label, "%.50s", case_key->file->head.name.text);
-  const struct dea_device_values with = {case_key->params,
-                                         best->p,
-                                         case_key->variable_count,
-                                         10,
-                                         label,
-                                         case_key->file->head.title.text,
-                                         ""};
+  snprintf(label, sizeof label, "%.50s", space->file->head.name.text);
+  const struct dea_device_values with = {
+      space->params, best->p, space->variable_count, 10, label, space->file->head.title.text, ""};
   dea_text_add(&text, "%s%s optimise: the best of %s for %s.\n", written_by, DEA_VERSION,
-               dea_path_name(case_key->path), dea_path_name(case_key->file->head.file));
-  for (size_t k = 0; k < case_key->file->objective_count; k++) {
-    const struct dea_column *column = &case_key->quantities[case_key->objectives[k]].shown;
+               dea_path_name(space->path), dea_path_name(space->file->head.file));
+  for (size_t k = 0; k < space->file->objective_count; k++) {
+    const struct dea_column *column = &space->quantities[space->objectives[k]].shown;
     dea_text_add(&text, "#   %s = %.8g %s at %.6g V, model %s\n", column->key,
-                 sign_of(case_key, k) * best->f[k], column->si_unit,
-                 case_key->voltages_V[case_key->voltage_count - 1], case_key->model.type->name);
+                 sign_of(space, k) * best->f[k], column->si_unit,
+                 space->voltages_V[space->voltage_count - 1], space->model.type->name);
   }
-  for (size_t j = 0; j < case_key->variable_count; j++) {
-    const char *bound = dea_optimum_bound(case_key, best, j);
+  for (size_t j = 0; j < space->variable_count; j++) {
+    const char *bound = dea_optimum_bound(space, best, j);
     if (bound != NULL) {
-      dea_text_add(&text, "#   %s is at its %s bound\n", case_key->params[j].param.name, bound);
+      dea_text_add(&text, "#   %s is at its %s bound\n", space->params[j].param.name, bound);
     }
   }
   for (unsigned f = 0; f < DEA_FLAG_COUNT; f++) {
@@ -294,7 +277,7 @@ static dea_status write_design(const struct work *w, const struct dea_optimum *b
     }
   }
   dea_status status =
-      dea_device_design_text(w->ctx, &case_key->model.file, case_key->device, &with, &text);
+      dea_device_design_text(w->ctx, &space->model.file, space->device, &with, &text);
   status = status == DEA_OK ? dea_text_write(w->ctx, &text, w->options->folder, name) : status;
   dea_text_free(&text);
   return status;
@@ -302,25 +285,25 @@ static dea_status write_design(const struct work *w, const struct dea_optimum *b
 
 static dea_status write_front(const struct work *w)
 {
-  const struct dea_case_key *case_key = w->case_key;
+  const struct dea_design_space *space = w->space;
   struct dea_text out = {.ctx = w->ctx};
   dea_text_add(&out, "design");
-  for (size_t j = 0; j < case_key->variable_count; j++) {
-    dea_text_add(&out, ",%s (%s)", case_key->params[j].param.name, case_key->params[j].param.unit);
+  for (size_t j = 0; j < space->variable_count; j++) {
+    dea_text_add(&out, ",%s (%s)", space->params[j].param.name, space->params[j].param.unit);
   }
   for (size_t k = 0; k < 2; k++) {
-    const struct dea_column *column = &case_key->quantities[case_key->objectives[k]].shown;
+    const struct dea_column *column = &space->quantities[space->objectives[k]].shown;
     dea_text_add(&out, ",%s (%s)", column->key, column->si_unit);
   }
   dea_text_add(&out, ",flags\n");
   for (size_t i = 0; i < w->report->count; i++) {
     const struct dea_optimum *best = &w->report->optima[i];
     dea_text_add(&out, "best-%zu.yaml", i + 1);
-    for (size_t j = 0; j < case_key->variable_count; j++) {
+    for (size_t j = 0; j < space->variable_count; j++) {
       dea_text_add(&out, ",%.12g", best->p[j]);
     }
     for (size_t k = 0; k < 2; k++) {
-      dea_text_add(&out, ",%.12g", sign_of(case_key, k) * best->f[k]);
+      dea_text_add(&out, ",%.12g", sign_of(space, k) * best->f[k]);
     }
     char words[DEA_FLAGS_SIZE];
     dea_text_add(&out, ",%s\n", dea_flags_text(best->marks, words));
@@ -347,9 +330,9 @@ static bool is_within(const struct dea_search *search, const double *looked)
  * an objective, or -1: the number of the evaluation, and the best so far as a line. */
 static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, int of_y)
 {
-  const struct dea_case_key *case_key = w->case_key;
+  const struct dea_design_space *space = w->space;
   const size_t count = dea_store_count(w->store);
-  const struct dea_column *y = &case_key->quantities[case_key->objectives[of_y]].shown;
+  const struct dea_column *y = &space->quantities[space->objectives[of_y]].shown;
   struct dea_series *beyond, *within, *line;
   const size_t points = of_x < 0 ? count : w->report->count;
   double best = INFINITY;
@@ -361,8 +344,7 @@ static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, i
                                 DEA_VERMILLION, of_x < 0 ? "best so far" : "front", &line));
   dea_figure_label(y, panel->y_label, sizeof panel->y_label);
   snprintf(panel->x_label, sizeof panel->x_label, "Evaluations");
-  const struct dea_column *x =
-      of_x < 0 ? NULL : &case_key->quantities[case_key->objectives[of_x]].shown;
+  const struct dea_column *x = of_x < 0 ? NULL : &space->quantities[space->objectives[of_x]].shown;
   if (x != NULL) {
     dea_figure_label(x, panel->x_label, sizeof panel->x_label);
   }
@@ -373,19 +355,19 @@ static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, i
     struct dea_series *to = good ? within : beyond;
     const double f = is_there ? looked[of_y] : NAN; // a scattered one of another stands for none
     to->values[i] = x == NULL  ? (double)(i + 1)
-                    : is_there ? x->factor * sign_of(case_key, (size_t)of_x) * looked[of_x]
+                    : is_there ? x->factor * sign_of(space, (size_t)of_x) * looked[of_x]
                                : NAN;
-    to->values[count + i] = y->factor * sign_of(case_key, (size_t)of_y) * f;
+    to->values[count + i] = y->factor * sign_of(space, (size_t)of_y) * f;
     best = good && f < best ? f : best;
     if (x == NULL && isfinite(best)) {
       line->values[i] = (double)(i + 1);
-      line->values[count + i] = y->factor * sign_of(case_key, (size_t)of_y) * best;
+      line->values[count + i] = y->factor * sign_of(space, (size_t)of_y) * best;
     }
   }
   for (size_t i = 0; i < points && x != NULL; i++) {
     const struct dea_optimum *at = &w->report->optima[i];
-    line->values[i] = x->factor * sign_of(case_key, (size_t)of_x) * at->f[of_x];
-    line->values[points + i] = y->factor * sign_of(case_key, (size_t)of_y) * at->f[of_y];
+    line->values[i] = x->factor * sign_of(space, (size_t)of_x) * at->f[of_x];
+    line->values[points + i] = y->factor * sign_of(space, (size_t)of_y) * at->f[of_y];
   }
   dea_panel_limit(panel);
   dea_panel_place_key(panel);
@@ -415,7 +397,7 @@ static dea_status draw_all(struct work *w)
   }
   dea_status status =
       draw(w, &folder, "progress", "designs in the order of their evaluation", -1, 0);
-  if (status == DEA_OK && w->case_key->file->objective_count > 1) {
+  if (status == DEA_OK && w->space->file->objective_count > 1) {
     status =
         draw(w, &folder, front_figure, "all designs, and the front of the two objectives", 0, 1);
   }
@@ -503,7 +485,7 @@ static bool forget(const struct work *w, const char *name, const char *begin)
  * kind. ended: to its end, so that what is not found is none. */
 static dea_status remove_older(const struct work *w, bool ended)
 {
-  const bool front = w->case_key->file->objective_count > 1;
+  const bool front = w->space->file->objective_count > 1;
   char name[BEST_SIZE];
   for (size_t i = front ? w->report->count + 1 : 1; i <= DEA_EXPLORE_FRONT_MAX + 1; i++) {
     name_best(i, name);
@@ -523,13 +505,13 @@ static void add_flags(struct work *w)
 {
   for (size_t i = 0; i < w->report->count; i++) {
     struct dea_optimum *best = &w->report->optima[i];
-    best->marks = dea_search_marks(&w->search, best->p, w->case_key->voltage_count - 1);
+    best->marks = dea_search_marks(&w->search, best->p, w->space->voltage_count - 1);
   }
 }
 
 static dea_status write_all(struct work *w, bool ended)
 {
-  const bool front = w->case_key->file->objective_count > 1;
+  const bool front = w->space->file->objective_count > 1;
   add_flags(w);
   for (size_t i = 0; i < dea_store_count(w->store); i++) {
     w->report->failed += dea_store_get(w->store, i)->why[0] != '\0' ? 1U : 0U;
@@ -548,13 +530,12 @@ static dea_status run(struct work *w)
   const struct dea_shard whole = {1, 1};
   DEA_TRY(w->ctx, check(w));
   DEA_TRY(w->ctx, build_scatter(w));
-  w->evaluator = dea_case_key_with_slopes(w->case_key);
+  w->evaluator = dea_design_space_with_slopes(w->space);
   w->report->gradients = w->evaluator.gradients;
   DEA_TRY(w->ctx, w->options->force ? dea_store_remove(w->ctx, w->options->folder) : DEA_OK);
-  DEA_TRY(w->ctx,
-          dea_store_open(w->ctx, w->options->folder,
-                         w->evaluator.gradients ? w->case_key->hash_slopes : w->case_key->hash,
-                         &w->evaluator, &whole, &w->store));
+  DEA_TRY(w->ctx, dea_store_open(w->ctx, w->options->folder,
+                                 w->evaluator.gradients ? w->space->hash_slopes : w->space->hash,
+                                 &w->evaluator, &whole, &w->store));
   w->report->before = dea_store_count(w->store);
   fill_search(w);
   dea_status status = dea_search_run(&w->search, w->report->optima, &w->report->count);
@@ -573,15 +554,15 @@ static dea_status run(struct work *w)
   return status == DEA_OK ? DEA_OK : dea_fail(w->ctx, status, "%s", message);
 }
 
-dea_status dea_optimise_run(const struct dea_case_key *case_key,
+dea_status dea_optimise_run(const struct dea_design_space *space,
                             const struct dea_optimise_options *options,
                             struct dea_optimise_report *report)
 {
-  struct work w = {.ctx = case_key->ctx,
-                   .case_key = case_key,
+  struct work w = {.ctx = space->ctx,
+                   .space = space,
                    .options = options,
                    .report = report,
-                   .memory = {.ctx = case_key->ctx}};
+                   .memory = {.ctx = space->ctx}};
   *report = (struct dea_optimise_report){0};
   dea_status status = run(&w);
   dea_store_close(w.store);

@@ -1,4 +1,4 @@
-/* What is explored: some numbers in, named quantities out. A device is one (case_key.h); tests have
+/* What is explored: some numbers in, named quantities out. A device is one (space.h); tests have
  * functions in closed form. */
 #pragma once
 

@@ -33,18 +33,16 @@ struct dea_sweep_report {
 
 /* Evaluates what of the plan is not in the folder yet and writes the tables of all that is there:
  * cases.csv, cases.h5, and of samples statistics.csv and indices.csv. After an interruption too. */
-dea_status dea_sweep_run(const struct dea_case_key *case_key,
+dea_status dea_sweep_run(const struct dea_design_space *space,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report);
 
 /* Of a sparse grid that is done: emulator.json into a folder, and the CSV of options.at. */
-dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                             const struct dea_store *store, const struct dea_sweep_options *options,
-                             char **at);
+dea_status dea_sweep_emulate(const struct dea_design_space *space, const struct dea_plan *plan,
+                             const struct dea_sweep_options *options, char **at);
 /* The tables of a plan's cases as far as they are done, and figures of the format, into a folder.
  */
-dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                           const struct dea_store *store, const struct dea_plot_format *format,
-                           const char *folder);
+dea_status dea_sweep_write(const struct dea_design_space *space, const struct dea_plan *plan,
+                           const struct dea_plot_format *format, const char *folder);
 
 /* In which order cases are evaluated: neighbours after each other, in groups that begin from the
  * solution of one of them. */

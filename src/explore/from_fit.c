@@ -1,5 +1,5 @@
 /* Parameters that dea fit has found as variables of an exploration (key `from_fit`). */
-#include "explore/case_key.h"
+#include "explore/design_space.h"
 
 #include "base/file.h"
 #include "base/text.h"

@@ -25,6 +25,14 @@ static void scatter(const struct dea_search *search, const double *p, size_t s, 
   }
 }
 
+/* The case of scattered design s of p by what the store has; NULL: it was not looked at. */
+static const struct dea_case *case_of(const struct dea_search *search, const double *p, size_t s)
+{
+  double at[DEA_CASE_PARAMS_MAX];
+  scatter(search, p, s, at);
+  return dea_store_find(search->store, at);
+}
+
 /* Value r of a case: an objective, or what a limit is crossed by. */
 static double value_of(const struct dea_search *search, size_t r, const double *q)
 {
@@ -60,9 +68,14 @@ static double quantile_of(const struct dea_search *search, const struct spread *
   return share > 0 ? low + share * (values[all->order[above]] - low) : low;
 }
 
-/* Statistic of one value over all scattered designs. */
-static double statistic_of(const struct dea_search *search, struct spread *all)
+/* Statistic of value r over all scattered designs of p, which are there. */
+static double statistic_of(const struct dea_search *search, const double *p, size_t r,
+                           struct spread *all)
 {
+  all->count = scattered(search);
+  for (size_t s = 0; s < all->count; s++) {
+    all->value[s] = value_of(search, r, case_of(search, p, s)->q);
+  }
   if (!isnan(search->quantile) && all->count > 1) {
     for (size_t i = 0; i < all->count; i++) {
       all->value[i] = isnan(all->value[i]) ? INFINITY : all->value[i];
@@ -101,19 +114,14 @@ static double statistic_slope(const struct dea_search *search, const struct spre
 
 bool dea_search_compute(const struct dea_search *search, const double *p, double *out)
 {
-  const size_t count = scattered(search), values = search->objective_count + search->limit_count;
-  struct spread all = {.count = count};
-  for (size_t r = 0; r < values; r++) {
-    for (size_t s = 0; s < count; s++) {
-      double at[DEA_CASE_PARAMS_MAX];
-      scatter(search, p, s, at);
-      const struct dea_case *done = dea_store_find(search->store, at);
-      if (done == NULL) {
-        return false;
-      }
-      all.value[s] = value_of(search, r, done->q);
+  struct spread all;
+  for (size_t s = 0; s < scattered(search); s++) {
+    if (case_of(search, p, s) == NULL) {
+      return false;
     }
-    out[r] = statistic_of(search, &all);
+  }
+  for (size_t r = 0; r < search->objective_count + search->limit_count; r++) {
+    out[r] = statistic_of(search, p, r, &all);
   }
   return true;
 }
@@ -122,9 +130,7 @@ unsigned dea_search_marks(const struct dea_search *search, const double *p, size
 {
   unsigned marks = 0;
   for (size_t s = 0; s < scattered(search); s++) {
-    double at[DEA_CASE_PARAMS_MAX];
-    scatter(search, p, s, at);
-    const struct dea_case *done = dea_store_find(search->store, at);
+    const struct dea_case *done = case_of(search, p, s);
     marks |= done != NULL ? done->marks[k] : 0;
   }
   return marks;
@@ -142,30 +148,23 @@ struct work {
   double bound;                        // of the other one; INFINITY: none
   double scale[DEA_EXPLORE_OBJECTIVES_MAX];
   double worst; // objective seen, scaled: what a design without values is given
-  size_t now;   // evaluations of this search
   nlopt_opt opt;
   struct dea_optimum best;
   double best_f;
-  double *around; // room for the points of one step, [2 searched or 1][scattered][params]
+  double *around;            // points of one step, [2 searched or 1][scattered][params]
+  size_t around_count, next; // of them: how many, and which is looked at next
 };
 
 // Evaluations -------------------------------------------------------------------------------------
 
-/* Points that are to be there. */
-struct batch {
-  struct work *w;
-  const double *p; // [count][params]
-  size_t count, next;
-};
-
 static bool next_case(void *user, struct dea_case *out)
 {
-  struct batch *batch = user;
-  const size_t n = batch->w->search->evaluator->param_count;
-  while (batch->next < batch->count) {
-    const double *p = batch->p + n * batch->next++;
-    if (dea_store_find(batch->w->search->store, p) == NULL) {
-      out->number = dea_store_count(batch->w->search->store);
+  struct work *w = user;
+  const size_t n = w->search->evaluator->param_count;
+  while (w->next < w->around_count) {
+    const double *p = w->around + n * w->next++;
+    if (dea_store_find(w->search->store, p) == NULL) {
+      out->number = dea_store_count(w->search->store);
       memcpy(out->p, p, n * sizeof *p);
       return true;
     }
@@ -175,21 +174,30 @@ static bool next_case(void *user, struct dea_case *out)
 
 static dea_status keep(void *user, const struct dea_case *done)
 {
-  const struct dea_search *search = ((struct batch *)user)->w->search;
+  const struct dea_search *search = ((const struct work *)user)->search;
   dea_progress(search->ctx, "designs", dea_store_count(search->store) + 1, 0);
   return dea_store_add(search->store, done);
 }
 
-/* Has points [count][params] evaluated. */
-static bool evaluate(struct work *w, const double *p, size_t count)
+/* Adds the scattered designs of p to the points around. */
+static void add_scattered(struct work *w, const double *p)
 {
-  struct batch batch = {w, p, count, 0};
+  for (size_t s = 0; s < scattered(w->search); s++) {
+    scatter(w->search, p, s, w->around + w->around_count++ * w->search->evaluator->param_count);
+  }
+}
+
+/* Has the points around evaluated, and takes them away. */
+static bool evaluate(struct work *w)
+{
+  w->next = 0;
   if (w->status == DEA_OK && dea_interrupted(w->search->ctx)) {
     w->status = dea_fail(w->search->ctx, DEA_E_INTERRUPTED, "interrupted; what was done is kept");
   }
   if (w->status == DEA_OK) {
-    w->status = dea_pool_run(w->pool, next_case, keep, &batch);
+    w->status = dea_pool_run(w->pool, next_case, keep, w);
   }
+  w->around_count = 0;
   if (w->status != DEA_OK && w->opt != NULL) {
     nlopt_force_stop(w->opt);
   }
@@ -267,39 +275,35 @@ static double slope_at(const struct work *w, size_t r, const struct dea_case *at
   return value_of(w->search, r, moved) - value_of(w->search, r, at->q);
 }
 
+/* The design at x with variable i moved within its range; where that is then. */
+static double move_point(const struct work *w, const double *x, size_t i, double by, double *p)
+{
+  double y[DEA_CASE_PARAMS_MAX];
+  memcpy(y, x, w->n * sizeof *y);
+  y[i] = fmin(fmax(x[i] + by, 0), 1);
+  point_of(w, y, p);
+  return y[i];
+}
+
 /* The same by central differences, or one-sided where one of the two designs has no value or would
  * lie outside of the range; 0 where both are missing. */
 static double difference_at(const struct work *w, size_t r, const double *x, size_t s, size_t i)
 {
-  const struct dea_search *search = w->search;
-  double value[3], at[3] = {fmax(x[i] - difference, 0), x[i], fmin(x[i] + difference, 1)};
-  for (size_t k = 0; k < 3; k++) {
-    double y[DEA_CASE_PARAMS_MAX], p[DEA_CASE_PARAMS_MAX], q[DEA_CASE_PARAMS_MAX];
-    memcpy(y, x, w->n * sizeof *y);
-    y[i] = at[k];
-    point_of(w, y, p);
-    scatter(search, p, s, q);
-    const struct dea_case *done = dea_store_find(search->store, q);
-    value[k] = done != NULL ? value_of(search, r, done->q) : NAN;
+  double value[3], at[3], p[DEA_CASE_PARAMS_MAX];
+  for (int k = 0; k < 3; k++) {
+    at[k] = move_point(w, x, i, (k - 1) * difference, p);
+    const struct dea_case *done = case_of(w->search, p, s);
+    value[k] = done != NULL ? value_of(w->search, r, done->q) : NAN;
   }
   const size_t low = isnan(value[0]) ? 1U : 0U, high = isnan(value[2]) ? 1U : 2U;
   return at[high] > at[low] ? (value[high] - value[low]) / (at[high] - at[low]) : 0;
 }
 
-/* The case of a scattered design at x; it is there. */
-static const struct dea_case *case_at(const struct work *w, const double *x, size_t s)
-{
-  double p[DEA_CASE_PARAMS_MAX], q[DEA_CASE_PARAMS_MAX];
-  point_of(w, x, p);
-  scatter(w->search, p, s, q);
-  return dea_store_find(w->search->store, q);
-}
-
-/* Whether the evaluator lacks a slope by a variable at x, of a value that is there. */
-static bool is_lacking(const struct work *w, const double *x, size_t i)
+/* Whether the evaluator lacks a slope by a variable at p, of a value that is there. */
+static bool is_lacking(const struct work *w, const double *p, size_t i)
 {
   for (size_t s = 0; s < scattered(w->search); s++) {
-    const struct dea_case *at = case_at(w, x, s);
+    const struct dea_case *at = case_of(w->search, p, s);
     for (size_t k = 0; k < functions(w); k++) {
       double shift, scale;
       const size_t r = source_of(w, k, &shift, &scale);
@@ -311,43 +315,37 @@ static bool is_lacking(const struct work *w, const double *x, size_t i)
   return false;
 }
 
-/* Has the designs x -+ h evaluated, for variables whose slopes the evaluator lacks. */
-static bool evaluate_around(struct work *w, const double *x)
+/* Has the designs x -+ h evaluated, for variables whose slopes the evaluator lacks at p, which is
+ * x. */
+static bool evaluate_around(struct work *w, const double *x, const double *p)
 {
   const struct dea_search *search = w->search;
-  const size_t params = search->evaluator->param_count;
-  size_t count = 0;
+  double beside[DEA_CASE_PARAMS_MAX];
   for (size_t i = 0; i < w->n; i++) {
-    if (!is_lacking(w, x, i)) {
+    if (!is_lacking(w, p, i)) {
       continue;
     }
-    for (size_t k = 0; k < 2; k++) {
-      double y[DEA_CASE_PARAMS_MAX], p[DEA_CASE_PARAMS_MAX];
-      memcpy(y, x, w->n * sizeof *y);
-      y[i] = k == 0 ? fmax(x[i] - difference, 0) : fmin(x[i] + difference, 1);
-      point_of(w, y, p);
-      for (size_t s = 0; s < scattered(search); s++) {
-        scatter(search, p, s, w->around + count++ * params);
-      }
+    for (int k = -1; k <= 1; k += 2) {
+      move_point(w, x, i, k * difference, beside);
+      add_scattered(w, beside);
     }
     if (search->replaced != NULL) {
       search->replaced[w->free[i]]++;
     }
   }
-  return count == 0 || evaluate(w, w->around, count);
+  return w->around_count == 0 || evaluate(w);
 }
 
-/* Slope of function k by variable i. all: its values, as the statistic left them. */
-static double function_slope(const struct work *w, size_t k, const struct spread *all,
-                             const double *x, size_t i)
+/* Slope of value r by variable i at x, which is p. all: the values, as the statistic left them. */
+static double slope_of(const struct work *w, size_t r, const struct spread *all, const double *x,
+                       const double *p, size_t i)
 {
-  double slopes[DEA_EXPLORE_SCATTERED_MAX], shift, scale;
-  const size_t r = source_of(w, k, &shift, &scale);
+  double slopes[DEA_EXPLORE_SCATTERED_MAX];
   for (size_t s = 0; s < all->count; s++) {
-    slopes[s] = slope_at(w, r, case_at(w, x, s), i);
+    slopes[s] = slope_at(w, r, case_of(w->search, p, s), i);
     slopes[s] = isnan(slopes[s]) ? difference_at(w, r, x, s, i) : slopes[s];
   }
-  const double slope = statistic_slope(w->search, all, slopes) / scale;
+  const double slope = statistic_slope(w->search, all, slopes);
   return isfinite(slope) ? slope : 0;
 }
 
@@ -355,30 +353,25 @@ static double function_slope(const struct work *w, size_t k, const struct spread
 static void functions_at(struct work *w, const double *x, double *values, double *gradients)
 {
   const struct dea_search *search = w->search;
-  const size_t count = functions(w), samples = scattered(search);
+  const size_t count = functions(w);
   double p[DEA_CASE_PARAMS_MAX], looked[DEA_SEARCH_VALUES_MAX];
   memset(values, 0, count * sizeof *values);
   if (gradients != NULL) {
     memset(gradients, 0, count * w->n * sizeof *gradients);
   }
   point_of(w, x, p);
-  for (size_t s = 0; s < samples; s++) {
-    scatter(search, p, s, w->around + s * search->evaluator->param_count);
-  }
-  if (!evaluate(w, w->around, samples) || (gradients != NULL && !evaluate_around(w, x))) {
+  add_scattered(w, p);
+  if (!evaluate(w) || (gradients != NULL && !evaluate_around(w, x, p))) {
     return;
   }
   dea_search_compute(search, p, looked);
   for (size_t k = 0; k < count; k++) {
     double shift, scale;
     const size_t r = source_of(w, k, &shift, &scale);
-    struct spread all = {.count = samples};
-    for (size_t s = 0; s < samples; s++) {
-      all.value[s] = value_of(search, r, case_at(w, x, s)->q);
-    }
-    values[k] = (statistic_of(search, &all) - shift) / scale;
+    struct spread all;
+    values[k] = (statistic_of(search, p, r, &all) - shift) / scale;
     for (size_t i = 0; i < w->n && gradients != NULL && isfinite(values[k]); i++) {
-      gradients[k * w->n + i] = function_slope(w, k, &all, x, i);
+      gradients[k * w->n + i] = slope_of(w, r, &all, x, p, i) / scale;
     }
   }
   note(w, p, values, looked);
@@ -512,11 +505,8 @@ static dea_status find_scale(struct work *w)
 {
   const struct dea_search *search = w->search;
   double looked[DEA_SEARCH_VALUES_MAX] = {0};
-  for (size_t s = 0; s < scattered(search); s++) {
-    scatter(search, search->start, s, w->around + s * search->evaluator->param_count);
-  }
-  const bool done = evaluate(w, w->around, scattered(search)) &&
-                    dea_search_compute(search, search->start, looked);
+  add_scattered(w, search->start);
+  const bool done = evaluate(w) && dea_search_compute(search, search->start, looked);
   for (size_t k = 0; k < DEA_EXPLORE_OBJECTIVES_MAX; k++) {
     const double f = done && k < search->objective_count ? fabs(looked[k]) : NAN;
     w->scale[k] = f > 0 ? f : 1;

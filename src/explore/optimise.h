@@ -42,10 +42,8 @@ struct dea_optimum {
   size_t evaluations; // after which it was found, those of before among them
 };
 
-enum { DEA_FRONT_MAX = 100 };
-
 /* Searches. out: of one objective one optimum; of two the front from the best of the first to the
- * best of the second, [*count] of at most DEA_FRONT_MAX. An interruption ends it with
+ * best of the second, [*count] of at most DEA_EXPLORE_FRONT_MAX. An interruption ends it with
  * DEA_E_INTERRUPTED, all evaluations kept. */
 dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *out, size_t *count);
 /* Objectives [objective_count], then what limits are crossed by [limit_count] (at most 0: within),

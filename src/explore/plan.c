@@ -165,57 +165,57 @@ static dea_status cannot_be_made(struct dea_context *ctx)
   return dea_fail(ctx, DEA_E_DESIGN, "the plan cannot be made");
 }
 
-static dea_status too_many(const struct dea_case_key *case_key, double count)
+static dea_status too_many(const struct dea_design_space *space, double count)
 {
-  DEA_TRY(case_key->ctx,
-          dea_finding_add(case_key->ctx, DEA_ERROR, case_key->file->plan.location,
+  DEA_TRY(space->ctx,
+          dea_finding_add(space->ctx, DEA_ERROR, space->file->plan.location,
                           "%.3g cases are too many: at most %d", count, DEA_EXPLORE_CASES_MAX));
-  return cannot_be_made(case_key->ctx);
+  return cannot_be_made(space->ctx);
 }
 
 /* A sparse grid is of few numbers that change evenly from low to high, at rising voltages. */
-static dea_status check_sparse(const struct dea_case_key *case_key)
+static dea_status check_sparse(const struct dea_design_space *space)
 {
-  const struct dea_explore_file *file = case_key->file;
-  for (size_t j = 0; j < case_key->variable_count; j++) {
-    const struct dea_variable *variable = &case_key->variables[j];
+  const struct dea_explore_file *file = space->file;
+  for (size_t j = 0; j < space->variable_count; j++) {
+    const struct dea_variable *variable = &space->variables[j];
     const struct dea_label *name = &variable->text->text.name;
     if (variable->value_count > 0 || variable->param.whole ||
         variable->text->distribution.value != DEA_UNIFORM) {
-      DEA_TRY(case_key->ctx,
-              dea_finding_add(case_key->ctx, DEA_ERROR, name->location,
+      DEA_TRY(space->ctx,
+              dea_finding_add(space->ctx, DEA_ERROR, name->location,
                               "%s: a sparse grid needs low and high, of no whole number",
                               name->text));
     }
   }
-  if (case_key->variable_count > DEA_EMULATOR_KEYS_MAX) {
-    DEA_TRY(case_key->ctx,
-            dea_finding_add(case_key->ctx, DEA_ERROR, file->plan.location,
+  if (space->variable_count > DEA_EMULATOR_KEYS_MAX) {
+    DEA_TRY(space->ctx,
+            dea_finding_add(space->ctx, DEA_ERROR, file->plan.location,
                             "a sparse grid has at most %d variables", DEA_EMULATOR_KEYS_MAX));
   }
-  if (case_key->voltage_count < 2) {
-    DEA_TRY(case_key->ctx, dea_finding_add(case_key->ctx, DEA_ERROR, file->plan.location,
-                                           "a sparse grid needs voltages between which it can "
-                                           "interpolate, such as voltages: [0 kV, 1 kV, 2 kV]"));
+  if (space->voltage_count < 2) {
+    DEA_TRY(space->ctx, dea_finding_add(space->ctx, DEA_ERROR, file->plan.location,
+                                        "a sparse grid needs voltages between which it can "
+                                        "interpolate, such as voltages: [0 kV, 1 kV, 2 kV]"));
   }
   return DEA_OK;
 }
 
-dea_status dea_plan_check(const struct dea_case_key *case_key)
+dea_status dea_plan_check(const struct dea_design_space *space)
 {
-  const struct dea_explore_file *file = case_key->file;
-  struct dea_context *ctx = case_key->ctx;
+  const struct dea_explore_file *file = space->file;
+  struct dea_context *ctx = space->ctx;
   const bool grid = file->plan.value == DEA_PLAN_GRID;
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  for (size_t j = 0; j < case_key->variable_count && grid; j++) {
-    const struct dea_label *name = &case_key->variables[j].text->text.name;
-    if (case_key->variables[j].value_count == 0) {
+  for (size_t j = 0; j < space->variable_count && grid; j++) {
+    const struct dea_label *name = &space->variables[j].text->text.name;
+    if (space->variables[j].value_count == 0) {
       DEA_TRY(ctx,
               dea_finding_add(ctx, DEA_ERROR, name->location,
                               "%s: a grid needs values, or steps from low to high", name->text));
     }
   }
-  DEA_TRY(ctx, file->plan.value == DEA_PLAN_SPARSE ? check_sparse(case_key) : DEA_OK);
+  DEA_TRY(ctx, file->plan.value == DEA_PLAN_SPARSE ? check_sparse(space) : DEA_OK);
   if (file->correlation_count > 0 &&
       (grid || file->plan.value == DEA_PLAN_SPARSE || file->plan.value == DEA_PLAN_INDICES)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
@@ -228,16 +228,16 @@ dea_status dea_plan_check(const struct dea_case_key *case_key)
   return dea_finding_count(ctx, DEA_ERROR) == errors ? DEA_OK : cannot_be_made(ctx);
 }
 
-static dea_status build_grid(struct dea_arena *memory, const struct dea_case_key *case_key,
+static dea_status build_grid(struct dea_arena *memory, const struct dea_design_space *space,
                              struct dea_plan *out)
 {
-  const size_t n = case_key->variable_count;
+  const size_t n = space->variable_count;
   double count = 1;
   for (size_t j = 0; j < n; j++) {
-    count *= (double)case_key->variables[j].value_count;
+    count *= (double)space->variables[j].value_count;
   }
   if (count > DEA_EXPLORE_CASES_MAX) {
-    return too_many(case_key, count);
+    return too_many(space, count);
   }
   out->samples = out->count = (size_t)count;
   out->p = dea_arena_alloc(memory, out->count * n, sizeof *out->p);
@@ -245,7 +245,7 @@ static dea_status build_grid(struct dea_arena *memory, const struct dea_case_key
   for (size_t c = 0; c < out->count; c++) {
     size_t rest = c;
     for (size_t j = n; j-- > 0;) { // the last variable changes first
-      const struct dea_variable *variable = &case_key->variables[j];
+      const struct dea_variable *variable = &space->variables[j];
       out->p[c * n + j] = variable->values[rest % variable->value_count];
       rest /= variable->value_count;
     }
@@ -253,66 +253,68 @@ static dea_status build_grid(struct dea_arena *memory, const struct dea_case_key
   return DEA_OK;
 }
 
-static dea_status build_sparse(struct dea_arena *memory, const struct dea_case_key *case_key,
+static dea_status build_sparse(struct dea_arena *memory, const struct dea_design_space *space,
                                struct dea_plan *out)
 {
-  const size_t n = case_key->variable_count;
-  const int level = (int)case_key->file->level.si;
+  const size_t n = space->variable_count;
+  const int level = (int)space->file->level.si;
   out->samples = out->count = dea_sparse_grid(n, level, NULL);
   out->p = dea_arena_alloc(memory, out->count * n, sizeof *out->p);
   out->nodes = dea_arena_alloc(memory, out->count * n, 1);
   DEA_TRY_MEMORY(!memory->failed);
   dea_sparse_grid(n, level, out->nodes);
   for (size_t i = 0; i < out->count * n; i++) {
-    out->p[i] = value_at(&case_key->variables[i % n], dea_sparse_grid_share(level, out->nodes[i]));
+    out->p[i] = value_at(&space->variables[i % n], dea_sparse_grid_share(level, out->nodes[i]));
   }
   return DEA_OK;
 }
 
-static dea_status build_samples(struct dea_arena *memory, const struct dea_case_key *case_key,
+static dea_status build_samples(struct dea_arena *memory, const struct dea_design_space *space,
                                 struct dea_plan *out)
 {
-  const size_t n = case_key->variable_count, samples = (size_t)case_key->file->samples.si;
-  const bool indices = case_key->file->plan.value == DEA_PLAN_INDICES;
+  const size_t n = space->variable_count, samples = (size_t)space->file->samples.si;
+  const bool indices = space->file->plan.value == DEA_PLAN_INDICES;
   const size_t dimensions = indices ? 2 * n : n, blocks = indices ? n + 2 : 1;
   if (dimensions > DEA_SOBOL_DIMENSIONS) {
-    DEA_TRY(case_key->ctx,
-            dea_finding_add(case_key->ctx, DEA_ERROR, case_key->file->plan.location,
+    DEA_TRY(space->ctx,
+            dea_finding_add(space->ctx, DEA_ERROR, space->file->plan.location,
                             "indices of at most %d variables", DEA_SOBOL_DIMENSIONS / 2));
-    return cannot_be_made(case_key->ctx);
+    return cannot_be_made(space->ctx);
   }
   if (samples * blocks > DEA_EXPLORE_CASES_MAX) {
-    return too_many(case_key, (double)(samples * blocks));
+    return too_many(space, (double)(samples * blocks));
   }
   out->samples = samples;
   out->count = samples * blocks;
   out->p = dea_arena_alloc(memory, out->count * n, sizeof *out->p);
   double *u = dea_arena_alloc(memory, samples * dimensions, sizeof *u);
   DEA_TRY_MEMORY(!memory->failed);
-  (case_key->file->plan.value == DEA_PLAN_RANDOM ? dea_sample_random : dea_sample_sobol)(
-      dimensions, samples, (unsigned long long)case_key->file->seed.si, u);
+  (space->file->plan.value == DEA_PLAN_RANDOM ? dea_sample_random : dea_sample_sobol)(
+      dimensions, samples, (unsigned long long)space->file->seed.si, u);
   if (!indices) {
-    dea_sample_correlate(case_key->file, samples, u);
+    dea_sample_correlate(space->file, samples, u);
   }
   for (size_t b = 0; b < blocks; b++) {
     for (size_t i = 0; i < samples; i++) {
       for (size_t j = 0; j < n; j++) { // block 0: A, 1: B, 2 + j: A with column j of B
         const bool second = b == 1 || b == j + 2;
         out->p[(b * samples + i) * n + j] =
-            value_at(&case_key->variables[j], u[i * dimensions + j + (second ? n : 0)]);
+            value_at(&space->variables[j], u[i * dimensions + j + (second ? n : 0)]);
       }
     }
   }
   return DEA_OK;
 }
 
-dea_status dea_plan_build(struct dea_arena *memory, const struct dea_case_key *case_key,
+dea_status dea_plan_build(struct dea_arena *memory, const struct dea_design_space *space,
                           struct dea_plan *out)
 {
-  const int kind = case_key->file->plan.value;
+  const int kind = space->file->plan.value;
   *out = (struct dea_plan){0};
-  DEA_TRY(case_key->ctx, dea_plan_check(case_key));
-  return kind == DEA_PLAN_GRID     ? build_grid(memory, case_key, out)
-         : kind == DEA_PLAN_SPARSE ? build_sparse(memory, case_key, out)
-                                   : build_samples(memory, case_key, out);
+  DEA_TRY(space->ctx, dea_plan_check(space));
+  DEA_TRY(space->ctx, kind == DEA_PLAN_GRID     ? build_grid(memory, space, out)
+                      : kind == DEA_PLAN_SPARSE ? build_sparse(memory, space, out)
+                                                : build_samples(memory, space, out));
+  out->cases = dea_arena_alloc(memory, out->count, sizeof(struct dea_case *));
+  return dea_arena_status(memory);
 }

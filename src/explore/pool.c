@@ -37,43 +37,21 @@ struct dea_pool {
   struct worker *workers; // [count]
 };
 
-/* All bytes through a socket; false where the other end is gone. */
-static bool send_all(int socket, const void *bytes, size_t length)
-{
-  for (const char *from = bytes; length > 0;) {
-    const ssize_t n = send(socket, from, length, MSG_NOSIGNAL);
-    if (n <= 0 && errno != EINTR) {
-      return false;
-    }
-    from += n > 0 ? n : 0;
-    length -= n > 0 ? (size_t)n : 0;
-  }
-  return true;
-}
-
-static bool receive_all(int socket, void *bytes, size_t length)
-{
-  for (char *to = bytes; length > 0;) {
-    const ssize_t n = recv(socket, to, length, 0);
-    if (n == 0 || (n < 0 && errno != EINTR)) {
-      return false;
-    }
-    to += n > 0 ? n : 0;
-    length -= n > 0 ? (size_t)n : 0;
-  }
-  return true;
-}
-
 // The process -------------------------------------------------------------------------------------
+
+static void clear_values(struct dea_case *io)
+{
+  for (size_t i = 0; i < DEA_CASE_VALUES_MAX; i++) {
+    io->q[i] = NAN;
+  }
+}
 
 /* Evaluates the case that is in it; q of it: NAN where there is no value. */
 static void evaluate(struct dea_context *ctx, const struct dea_evaluator *evaluator,
                      struct reply *reply)
 {
   const double began_s = dea_clock_s();
-  for (size_t i = 0; i < DEA_CASE_VALUES_MAX; i++) {
-    reply->done.q[i] = NAN;
-  }
+  clear_values(&reply->done);
   reply->status = evaluator->evaluate(evaluator->user, ctx, &reply->done);
   snprintf(reply->message, sizeof reply->message, "%.255s", dea_context_message(ctx));
   reply->done.wall_s = dea_clock_s() - began_s;
@@ -84,47 +62,36 @@ static void work(struct dea_context *ctx, const struct dea_evaluator *evaluator,
 {
   struct reply reply;
   memset(&reply, 0, sizeof reply); // all bytes of it are sent
-  while (receive_all(socket, &reply.done, sizeof reply.done)) {
+  while (recv(socket, &reply.done, sizeof reply.done, 0) == (ssize_t)sizeof reply.done) {
     evaluate(ctx, evaluator, &reply);
-    if (!send_all(socket, &reply, sizeof reply)) {
+    if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) < 0) {
       return;
     }
   }
 }
 
-/* Makes a copy of this process, with a socket between both. *process: 0 in the copy, which ends
- * with this one and leaves Ctrl-C to it. */
-static dea_status fork_beside(struct dea_context *ctx, pid_t *process, int *socket)
+/* A copy of this process with a socket between both, a message a case, that works until this one
+ * ends, however that ends, and leaves Ctrl-C to it. */
+static dea_status start(struct dea_pool *pool, struct worker *worker)
 {
   int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-    return dea_fail(ctx, DEA_E_IO, "no socket for another process: %s", strerror(errno));
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
+    return dea_fail(pool->ctx, DEA_E_IO, "no socket for another process: %s", strerror(errno));
   }
-  const pid_t parent = getpid();
-  *process = fork();
-  *socket = ends[*process == 0 ? 1 : 0];
-  close(ends[*process == 0 ? 0 : 1]);
-  if (*process == 0) {
+  const pid_t parent = getpid(), process = fork();
+  const int socket = ends[process == 0 ? 1 : 0];
+  close(ends[process == 0 ? 0 : 1]);
+  if (process < 0) {
+    close(socket);
+    return dea_fail(pool->ctx, DEA_E_IO, "no other process: %s", strerror(errno));
+  }
+  if (process == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     signal(SIGINT, SIG_IGN);
     signal(SIGTERM, SIG_DFL);
     if (getppid() != parent) {
       _exit(1);
     }
-  } else if (*process < 0) {
-    close(*socket);
-    return dea_fail(ctx, DEA_E_IO, "no other process: %s", strerror(errno));
-  }
-  return DEA_OK;
-}
-
-/* A process that works until this one ends, however that ends. */
-static dea_status start(struct dea_pool *pool, struct worker *worker)
-{
-  pid_t process = -1;
-  int socket = -1;
-  DEA_TRY(pool->ctx, fork_beside(pool->ctx, &process, &socket));
-  if (process == 0) {
     dea_context_set_progress(pool->ctx, NULL, NULL);
     dea_context_set_interrupt(pool->ctx, NULL);
     for (size_t k = 0; k < pool->count; k++) { // the end of one is seen by this socket alone
@@ -197,28 +164,21 @@ static dea_status assign_case(struct dea_pool *pool, struct worker *worker)
 {
   DEA_TRY(pool->ctx, worker->process == 0 ? start(pool, worker) : DEA_OK);
   worker->busy = true;
-  send_all(worker->socket, &worker->now, sizeof worker->now); // one that is gone is seen later
+  send(worker->socket, &worker->now, sizeof worker->now, MSG_NOSIGNAL); // its end is seen later
   return DEA_OK;
 }
 
-/* What a process that died leaves of its case. */
-static void reap(struct dea_pool *pool, struct worker *worker, struct reply *reply)
-{
-  *reply = (struct reply){.done = worker->now};
-  for (size_t i = 0; i < dea_evaluator_values(pool->evaluator); i++) {
-    reply->done.q[i] = NAN;
-  }
-  end(worker, reply->done.why);
-}
-
+/* What a process says of its case, or what is left of that where it has died. */
 static dea_status receive(struct dea_pool *pool, struct worker *worker, dea_case_sink sink,
                           void *user)
 {
   struct reply reply;
-  if (receive_all(worker->socket, &reply, sizeof reply)) {
+  if (recv(worker->socket, &reply, sizeof reply, 0) == (ssize_t)sizeof reply) {
     worker->busy = false;
   } else {
-    reap(pool, worker, &reply);
+    reply = (struct reply){.done = worker->now};
+    clear_values(&reply.done);
+    end(worker, reply.done.why);
   }
   if (reply.status != DEA_OK) {
     return dea_fail(pool->ctx, reply.status, "%s", reply.message);

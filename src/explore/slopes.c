@@ -1,5 +1,5 @@
 /* Gradients of quantities by the model's own (docs/theory/gradients.md). */
-#include "explore/case_key.h"
+#include "explore/design_space.h"
 
 #include "result/columns.h"
 #include "study/force.h"
@@ -28,27 +28,28 @@ struct wanted {
 };
 
 /* Whether an objective or a limit is of a quantity. */
-static bool is_wanted(const struct dea_case_key *case_key, size_t i)
+static bool is_wanted(const struct dea_design_space *space, size_t i)
 {
   bool wanted = false;
-  for (size_t k = 0; k < case_key->file->objective_count; k++) {
-    wanted = wanted || case_key->objectives[k] == (int)i;
+  for (size_t k = 0; k < space->file->objective_count; k++) {
+    wanted = wanted || space->objectives[k] == (int)i;
   }
-  for (size_t l = 0; l < case_key->limit_count; l++) {
-    wanted = wanted || case_key->limits[l].column == (int)i;
+  for (size_t l = 0; l < space->limit_count; l++) {
+    wanted = wanted || space->limits[l].column == (int)i;
   }
   return wanted;
 }
 
-static struct wanted find_wanted(const struct dea_case_key *case_key, bool held)
+static struct wanted find_wanted(const struct dea_design_space *space, bool held)
 {
   struct wanted out = {.column_count = 0};
   for (int of_monitors = 0; of_monitors < 2; of_monitors++) {
-    for (size_t i = 0; i < case_key->quantity_count; i++) {
-      const struct dea_explored *quantity = &case_key->quantities[i];
-      if (!is_wanted(case_key, i) || dea_case_key_is_held(case_key, i) != held ||
-          quantity->is_critical || quantity->is_seen != (of_monitors == 1) ||
-          (quantity->is_seen && quantity->of.source != DEA_OF_MONITOR)) {
+    for (size_t i = 0; i < space->quantity_count; i++) {
+      const struct dea_explored *quantity = &space->quantities[i];
+      if (!is_wanted(space, i) || dea_design_space_is_held(space, i) != held ||
+          quantity->source == DEA_EXPLORED_CRITICAL ||
+          (quantity->source == DEA_EXPLORED_MONITOR) != (of_monitors == 1) ||
+          (of_monitors == 1 && quantity->of.source != DEA_OF_MONITOR)) {
         continue;
       }
       out.quantity[out.column_count + out.monitor_count] = i;
@@ -64,16 +65,16 @@ static struct wanted find_wanted(const struct dea_case_key *case_key, bool held)
 }
 
 /* The device with variable j moved by `by`. *device: NULL where it cannot be. */
-static dea_status build(struct dea_context *ctx, const struct dea_case_key *case_key, size_t j,
+static dea_status build(struct dea_context *ctx, const struct dea_design_space *space, size_t j,
                         double by, struct dea_design **design, struct dea_device **device)
 {
   double p[DEA_CASE_PARAMS_MAX];
-  for (size_t i = 0; i < case_key->variable_count; i++) {
-    p[i] = case_key->now->p[i];
+  for (size_t i = 0; i < space->variable_count; i++) {
+    p[i] = space->now->p[i];
   }
   p[j] += by;
-  const dea_status status = dea_device_params_build(ctx, &case_key->model.file, case_key->params,
-                                                    case_key->variable_count, p, design, device);
+  const dea_status status = dea_device_params_build(ctx, &space->model.file, space->params,
+                                                    space->variable_count, p, design, device);
   if (status == DEA_E_DESIGN) { // beyond what the key takes
     dea_context_clear(ctx);
     dea_device_destroy(ctx, *device);
@@ -84,16 +85,17 @@ static dea_status build(struct dea_context *ctx, const struct dea_case_key *case
 }
 
 /* Adds the change of a variable: to both sides, or to the one where there is a device. */
-static dea_status add_change(struct dea_context *ctx, const struct dea_case_key *case_key, size_t j,
-                             const struct dea_device *device, double voltage_V, struct sides *sides)
+static dea_status add_change(struct dea_context *ctx, const struct dea_design_space *space,
+                             size_t j, const struct dea_device *device, double voltage_V,
+                             struct sides *sides)
 {
-  const struct dea_variable *variable = &case_key->variables[j];
-  const double size = fmax(fabs(case_key->now->p[j]), variable->high - variable->low);
+  const struct dea_variable *variable = &space->variables[j];
+  const double size = fmax(fabs(space->now->p[j]), variable->high - variable->low);
   struct dea_design_change *change = &sides->changes[sides->count];
   *change = (struct dea_design_change){.voltage_V = {voltage_V, voltage_V}};
   for (size_t k = 0; k < 2; k++) {
     const size_t n = 2 * j + k;
-    DEA_TRY(ctx, build(ctx, case_key, j, (k == 0 ? -step : step) * size, &sides->design[n],
+    DEA_TRY(ctx, build(ctx, space, j, (k == 0 ? -step : step) * size, &sides->design[n],
                        &sides->device[n]));
     change->device[k] = sides->device[n] != NULL ? sides->device[n] : device;
     change->width += sides->device[n] != NULL ? step * size : 0;
@@ -110,18 +112,17 @@ static dea_status add_change(struct dea_context *ctx, const struct dea_case_key 
 }
 
 /* Keeps the slope of a quantity at the last voltage. */
-static void set_slope(const struct dea_case_key *case_key, size_t quantity, size_t variable,
+static void set_slope(const struct dea_design_space *space, size_t quantity, size_t variable,
                       double slope)
 {
-  const size_t value = (case_key->voltage_count - 1) * case_key->quantity_count + quantity;
-  case_key->now->q[case_key->evaluator.value_count + value * case_key->variable_count + variable] =
-      slope;
+  const size_t value = (space->voltage_count - 1) * space->quantity_count + quantity;
+  space->now->q[space->evaluator.value_count + value * space->variable_count + variable] = slope;
 }
 
-static dea_status find(struct dea_context *ctx, const struct dea_case_key *case_key,
+static dea_status find(struct dea_context *ctx, const struct dea_design_space *space,
                        struct dea_model *model, const struct sides *sides, bool held)
 {
-  const struct wanted wanted = find_wanted(case_key, held);
+  const struct wanted wanted = find_wanted(space, held);
   double slopes[DEA_CASE_PARAMS_MAX * DEA_EXPLORE_QUANTITIES_MAX];
   const size_t count = wanted.column_count + wanted.monitor_count;
   const struct dea_gradient_request ask = {.changes = sides->changes,
@@ -134,7 +135,7 @@ static dea_status find(struct dea_context *ctx, const struct dea_case_key *case_
   if (count == 0) {
     return DEA_OK;
   }
-  const dea_status status = case_key->model.type->gradient(ctx, model, &ask, slopes);
+  const dea_status status = space->model.type->gradient(ctx, model, &ask, slopes);
   if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
     return status;
   }
@@ -144,23 +145,23 @@ static dea_status find(struct dea_context *ctx, const struct dea_case_key *case_
   }
   for (size_t c = 0; c < sides->count; c++) {
     for (size_t i = 0; i < count; i++) {
-      set_slope(case_key, wanted.quantity[i], sides->variable[c], slopes[c * count + i]);
+      set_slope(space, wanted.quantity[i], sides->variable[c], slopes[c * count + i]);
     }
   }
   return DEA_OK;
 }
 
 /* Slopes of critical voltages. */
-static dea_status find_critical(struct dea_context *ctx, const struct dea_case_key *case_key,
+static dea_status find_critical(struct dea_context *ctx, const struct dea_design_space *space,
                                 const struct sides *sides)
 {
   double slopes[DEA_CASE_PARAMS_MAX];
-  for (size_t i = 0; i < case_key->quantity_count; i++) {
-    if (!case_key->quantities[i].is_critical || !is_wanted(case_key, i)) {
+  for (size_t i = 0; i < space->quantity_count; i++) {
+    if (space->quantities[i].source != DEA_EXPLORED_CRITICAL || !is_wanted(space, i)) {
       continue;
     }
     const dea_status status =
-        dea_critical_slopes(ctx, &case_key->critical[i], sides->changes, sides->count, slopes);
+        dea_critical_slopes(ctx, &space->critical[i], sides->changes, sides->count, slopes);
     if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
       return status;
     }
@@ -169,34 +170,35 @@ static dea_status find_critical(struct dea_context *ctx, const struct dea_case_k
       continue;
     }
     for (size_t c = 0; c < sides->count; c++) {
-      set_slope(case_key, i, sides->variable[c], slopes[c]);
+      set_slope(space, i, sides->variable[c], slopes[c]);
     }
   }
   return DEA_OK;
 }
 
-static dea_status add_stop(struct dea_case_key *case_key, struct dea_model *model,
-                           const struct dea_device *device, size_t stop)
+dea_status dea_design_space_add_slopes(const struct dea_design_space *space,
+                                       struct dea_model *model, const struct dea_device *device,
+                                       size_t stop)
 {
-  struct dea_context *ctx = case_key->model.ctx;
-  const size_t last = case_key->voltage_count - 1;
+  struct dea_context *ctx = space->model.ctx;
+  const size_t last = space->voltage_count - 1;
   struct sides sides = {.count = 0};
   dea_status status = DEA_OK;
-  if (stop != last && stop != case_key->voltage_count + last) {
+  if (stop != last && stop != space->voltage_count + last) {
     return DEA_OK;
   }
-  for (size_t j = 0; j < case_key->variable_count && status == DEA_OK; j++) {
-    if (case_key->variables[j].value_count == 0) {
-      status = add_change(ctx, case_key, j, device, case_key->voltages_V[last], &sides);
+  for (size_t j = 0; j < space->variable_count && status == DEA_OK; j++) {
+    if (space->variables[j].value_count == 0) {
+      status = add_change(ctx, space, j, device, space->voltages_V[last], &sides);
     }
   }
   if (status == DEA_OK && sides.count > 0) {
-    status = find(ctx, case_key, model, &sides, stop != last);
+    status = find(ctx, space, model, &sides, stop != last);
   }
   if (status == DEA_OK && sides.count > 0 && stop == last) {
-    status = find_critical(ctx, case_key, &sides);
+    status = find_critical(ctx, space, &sides);
   }
-  for (size_t n = 0; n < 2 * case_key->variable_count; n++) {
+  for (size_t n = 0; n < 2 * space->variable_count; n++) {
     dea_device_destroy(ctx, sides.device[n]);
     dea_design_destroy(ctx, sides.design[n]);
   }
@@ -205,22 +207,20 @@ static dea_status add_stop(struct dea_case_key *case_key, struct dea_model *mode
 
 static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case *io)
 {
-  struct dea_case_key *case_key = user;
-  case_key->now = io;
-  case_key->stood = add_stop;
-  const dea_status status = case_key->evaluator.evaluate(case_key, ctx, io);
-  case_key->stood = NULL;
-  case_key->now = NULL;
+  struct dea_design_space *space = user;
+  space->now = io;
+  const dea_status status = space->evaluator.evaluate(space, ctx, io);
+  space->now = NULL;
   return status;
 }
 
-struct dea_evaluator dea_case_key_with_slopes(const struct dea_case_key *case_key)
+struct dea_evaluator dea_design_space_with_slopes(const struct dea_design_space *space)
 {
-  struct dea_evaluator out = case_key->evaluator;
-  const int method = case_key->file->method.value;
-  out.gradients = case_key->model.type->gradient != NULL &&
+  struct dea_evaluator out = space->evaluator;
+  const int method = space->file->method.value;
+  out.gradients = space->model.type->gradient != NULL &&
                   (method == DEA_SLSQP || method == DEA_MMA) &&
-                  case_key->file->gradients.value == DEA_SLOPES_MODEL;
+                  space->file->gradients.value == DEA_SLOPES_MODEL;
   if (out.gradients && dea_evaluator_values(&out) <= DEA_CASE_VALUES_MAX) {
     out.evaluate = evaluate;
   } else {

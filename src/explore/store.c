@@ -24,9 +24,9 @@ static const double sync_every_s = 0.5;
 struct dea_store {
   struct dea_context *ctx;
   const struct dea_evaluator *evaluator;
-  char case_key[65], *path; // of the part that is written; NULL: none
-  int file;                 // -1: none
-  struct dea_case **cases;  // [room], count of them there; each with its own values only
+  char hash[65], *path;    // of the part that is written; NULL: none
+  int file;                // -1: none
+  struct dea_case **cases; // [room], count of them there; each with its own values only
   size_t count, capacity;
   size_t *table, table_size; // open addressing: 1 + index of a case, 0: free
   size_t torn;
@@ -181,7 +181,7 @@ static bool read_line(const struct dea_evaluator *evaluator, char *line, struct 
 
 static void add_head(struct dea_text *out, const struct dea_store *store)
 {
-  dea_text_add(out, "%s %s %zu %zu\n", first_word, store->case_key, store->evaluator->param_count,
+  dea_text_add(out, "%s %s %zu %zu\n", first_word, store->hash, store->evaluator->param_count,
                dea_evaluator_values(store->evaluator) + store->evaluator->mark_count);
 }
 
@@ -333,7 +333,7 @@ static dea_status open_all(struct dea_store *store, const char *folder,
   return shard != NULL ? mend_part(store) : DEA_OK;
 }
 
-dea_status dea_store_open(struct dea_context *ctx, const char *folder, const char *case_key,
+dea_status dea_store_open(struct dea_context *ctx, const char *folder, const char *hash,
                           const struct dea_evaluator *evaluator, const struct dea_shard *shard,
                           struct dea_store **out)
 {
@@ -341,7 +341,7 @@ dea_status dea_store_open(struct dea_context *ctx, const char *folder, const cha
   struct dea_store *store = dea_alloc(ctx, 1, sizeof *store);
   DEA_TRY_MEMORY(store != NULL);
   *store = (struct dea_store){.ctx = ctx, .evaluator = evaluator, .file = -1};
-  snprintf(store->case_key, sizeof store->case_key, "%s", case_key);
+  snprintf(store->hash, sizeof store->hash, "%s", hash);
   void *before = dea_c_locale_enter();
   dea_status status = grow(store);
   status = status == DEA_OK ? open_all(store, folder, shard) : status;

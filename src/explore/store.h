@@ -12,11 +12,11 @@ struct dea_shard {
 
 struct dea_store;
 
-/* Opens the store in a folder, which is made, and reads what is there of all parts. question: hash
+/* Opens the store in a folder, which is made, and reads what is there of all parts. hash:
  * of what is asked; DEA_E_IO where the folder holds answers to another one, or where another
  * process writes to the same part. shard: NULL: nothing will be written. out: owned by the caller,
  * NULL on failure. */
-dea_status dea_store_open(struct dea_context *ctx, const char *folder, const char *case_key,
+dea_status dea_store_open(struct dea_context *ctx, const char *folder, const char *hash,
                           const struct dea_evaluator *evaluator, const struct dea_shard *shard,
                           struct dea_store **out);
 /* NULL is fine. */

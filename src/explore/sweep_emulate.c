@@ -9,53 +9,52 @@
 
 /* An emulator and what it lends. */
 struct work {
-  const struct dea_case_key *case_key;
+  const struct dea_design_space *space;
   struct dea_arena memory;
   struct dea_emulator emulator;
   char device[65];
 };
 
 /* Whether all cases of the plan are done; they are then in *w. */
-static dea_status gather(struct work *w, const struct dea_plan *plan, const struct dea_store *store,
-                         bool *whole)
+static dea_status gather(struct work *w, const struct dea_plan *plan, bool *whole)
 {
-  const struct dea_case_key *key = w->case_key;
-  const size_t keys = key->variable_count, volts = key->voltage_count,
-               each = key->evaluator.value_count;
+  const struct dea_design_space *space = w->space;
+  const size_t keys = space->variable_count, volts = space->voltage_count,
+               each = space->evaluator.value_count;
   struct dea_emulator_key *of = dea_arena_alloc(&w->memory, keys, sizeof *of);
   const struct dea_column **columns =
-      dea_arena_alloc(&w->memory, key->quantity_count, sizeof *columns);
+      dea_arena_alloc(&w->memory, space->quantity_count, sizeof *columns);
   double *values = dea_arena_alloc(&w->memory, plan->count * each, sizeof *values);
   unsigned *flags = dea_arena_alloc(&w->memory, plan->count * volts, sizeof *flags);
-  DEA_TRY(key->ctx, dea_arena_status(&w->memory));
-  DEA_TRY(key->ctx, dea_emulator_device(key->ctx, key->design, key->device, w->device));
+  DEA_TRY(space->ctx, dea_arena_status(&w->memory));
+  DEA_TRY(space->ctx, dea_emulator_device(space->ctx, space->design, space->device, w->device));
   for (size_t j = 0; j < keys; j++) {
-    const struct dea_device_param *param = &key->params[j];
-    of[j] = (struct dea_emulator_key){param->param.name, param->param.unit, key->variables[j].low,
-                                      key->variables[j].high, param->designed};
+    const struct dea_device_param *param = &space->params[j];
+    of[j] = (struct dea_emulator_key){param->param.name, param->param.unit, space->variables[j].low,
+                                      space->variables[j].high, param->designed};
   }
-  for (size_t q = 0; q < key->quantity_count; q++) {
-    columns[q] = &key->quantities[q].shown;
+  for (size_t q = 0; q < space->quantity_count; q++) {
+    columns[q] = &space->quantities[q].shown;
   }
   *whole = true;
   for (size_t c = 0; c < plan->count && *whole; c++) {
-    const struct dea_case *done = dea_store_find(store, plan->p + c * keys);
+    const struct dea_case *done = plan->cases[c];
     *whole = done != NULL;
     if (done != NULL) {
       memcpy(values + c * each, done->q, each * sizeof *values);
       memcpy(flags + c * volts, done->marks, volts * sizeof *flags);
     }
   }
-  w->emulator = (struct dea_emulator){.model = key->model.type->name,
+  w->emulator = (struct dea_emulator){.model = space->model.type->name,
                                       .device = w->device,
                                       .keys = of,
                                       .key_count = keys,
                                       .case_count = plan->count,
                                       .voltage_count = volts,
-                                      .quantity_count = key->quantity_count,
-                                      .level = (int)key->file->level.si,
+                                      .quantity_count = space->quantity_count,
+                                      .level = (int)space->file->level.si,
                                       .nodes = plan->nodes,
-                                      .voltages_V = key->voltages_V,
+                                      .voltages_V = space->voltages_V,
                                       .quantities = columns,
                                       .values = values,
                                       .flags = flags};
@@ -67,35 +66,35 @@ static dea_status gather(struct work *w, const struct dea_plan *plan, const stru
 static dea_status find_shares(const struct work *w, const struct dea_sweep_options *options,
                               double *share)
 {
-  const struct dea_case_key *key = w->case_key;
-  struct dea_context *ctx = key->ctx;
+  const struct dea_design_space *space = w->space;
+  struct dea_context *ctx = space->ctx;
   const char *names[DEA_CASE_PARAMS_MAX];
-  for (size_t j = 0; j < key->variable_count; j++) {
-    share[j] = key->params[j].designed;
-    names[j] = key->params[j].param.name;
+  for (size_t j = 0; j < space->variable_count; j++) {
+    share[j] = space->params[j].designed;
+    names[j] = space->params[j].param.name;
   }
   for (size_t i = 0; i < options->at_count; i++) {
     struct dea_label label = {.location = {"--at", 0, 0}};
     size_t j = 0;
-    while (j < key->variable_count && strcmp(names[j], options->at[i].key) != 0) {
+    while (j < space->variable_count && strcmp(names[j], options->at[i].key) != 0) {
       j++;
     }
     snprintf(label.text, sizeof label.text, "%s",
-             j < key->variable_count ? options->at[i].value : options->at[i].key);
-    DEA_TRY(ctx, j < key->variable_count
-                     ? dea_device_param_number(ctx, &key->params[j], &label, &share[j])
-                     : dea_explore_unknown(ctx, &label, "variable", names, key->variable_count));
+             j < space->variable_count ? options->at[i].value : options->at[i].key);
+    DEA_TRY(ctx, j < space->variable_count
+                     ? dea_device_param_number(ctx, &space->params[j], &label, &share[j])
+                     : dea_explore_unknown(ctx, &label, "variable", names, space->variable_count));
   }
   if (dea_finding_count(ctx, DEA_ERROR) > 0) {
     return dea_fail(ctx, DEA_E_DESIGN, "--at has errors");
   }
-  for (size_t j = 0; j < key->variable_count; j++) {
-    const struct dea_variable *of = &key->variables[j];
+  for (size_t j = 0; j < space->variable_count; j++) {
+    const struct dea_variable *of = &space->variables[j];
     char text[3][80];
     if (!(share[j] >= of->low && share[j] <= of->high)) {
-      dea_device_param_show(&key->params[j], share[j], text[0]);
-      dea_device_param_show(&key->params[j], of->low, text[1]);
-      dea_device_param_show(&key->params[j], of->high, text[2]);
+      dea_device_param_show(&space->params[j], share[j], text[0]);
+      dea_device_param_show(&space->params[j], of->low, text[1]);
+      dea_device_param_show(&space->params[j], of->high, text[2]);
       return dea_fail(ctx, DEA_E_DESIGN, "%s: %s is outside the range that was computed, %s to %s",
                       names[j], text[0], text[1], text[2]);
     }
@@ -112,9 +111,9 @@ static dea_status add_rows(struct work *w, const double *share, struct dea_text 
          *errors = dea_arena_alloc(&w->memory, numbers, sizeof *errors);
   unsigned *flags = dea_arena_alloc(&w->memory, e->voltage_count, sizeof *flags);
   char words[DEA_FLAGS_SIZE];
-  DEA_TRY(w->case_key->ctx, dea_arena_status(&w->memory));
-  DEA_TRY(w->case_key->ctx, dea_emulator_at(w->case_key->ctx, e, share, e->voltages_V,
-                                            e->voltage_count, values, errors, flags));
+  DEA_TRY(w->space->ctx, dea_arena_status(&w->memory));
+  DEA_TRY(w->space->ctx, dea_emulator_at(w->space->ctx, e, share, e->voltages_V, e->voltage_count,
+                                         values, errors, flags));
   dea_text_add(out, "voltage_V (V)");
   for (size_t q = 0; q < e->quantity_count; q++) {
     const struct dea_column *of = e->quantities[q];
@@ -133,7 +132,7 @@ static dea_status add_rows(struct work *w, const double *share, struct dea_text 
 
 static dea_status emulate(struct work *w, const struct dea_sweep_options *options, char **at)
 {
-  struct dea_context *ctx = w->case_key->ctx;
+  struct dea_context *ctx = w->space->ctx;
   struct dea_text out = {.ctx = ctx};
   double share[DEA_CASE_PARAMS_MAX];
   char *json;
@@ -152,18 +151,17 @@ static dea_status emulate(struct work *w, const struct dea_sweep_options *option
   return status;
 }
 
-dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                             const struct dea_store *store, const struct dea_sweep_options *options,
-                             char **at)
+dea_status dea_sweep_emulate(const struct dea_design_space *space, const struct dea_plan *plan,
+                             const struct dea_sweep_options *options, char **at)
 {
-  struct dea_context *ctx = case_key->ctx;
-  struct work w = {.case_key = case_key, .memory = {.ctx = ctx}};
+  struct dea_context *ctx = space->ctx;
+  struct work w = {.space = space, .memory = {.ctx = ctx}};
   bool whole = false;
   if (plan->nodes == NULL) {
     return dea_fail(ctx, DEA_E_DESIGN, "--at is of the plan sparse-grid");
   }
   void *before = dea_c_locale_enter();
-  dea_status status = gather(&w, plan, store, &whole);
+  dea_status status = gather(&w, plan, &whole);
   if (status == DEA_OK && whole) {
     status = dea_emulator_build(ctx, &w.emulator);
     status = status == DEA_OK ? emulate(&w, options, at) : status;

@@ -13,167 +13,176 @@
 #include <string.h>
 
 struct work {
-  const struct dea_case_key *case_key;
+  struct dea_context *ctx;
+  const struct dea_design_space *space;
   const struct dea_plan *plan;
-  const struct dea_store *store;
   const struct dea_plot_format *format;
   const char *folder;
-  struct dea_context *ctx;
+  struct dea_arena memory;
   size_t params, values;
+  /* Of samples: */
+  struct dea_spread *spreads;               // [values]
+  size_t doubted[DEA_EXPLORE_VOLTAGES_MAX]; // that are not to be trusted
 };
-
-static const struct dea_case *case_of(const struct work *w, size_t i)
-{
-  return dea_store_find(w->store, w->plan->p + i * w->params);
-}
-
-static const char *unit_of(const struct work *w, size_t value)
-{
-  const size_t i = value % w->case_key->quantity_count;
-  return w->case_key->quantities[i].shown.si_unit;
-}
 
 // The cases ---------------------------------------------------------------------------------------
 
-static dea_status write_cases(const struct work *w)
+/* A column of cases.csv and cases.h5. */
+struct column {
+  enum { ID, VARIABLE, VALUE, TIME, FLAGS, REASON } kind;
+  size_t i; // of its kind
+  char name[DEA_FIT_PARAM_NAME > 64 ? DEA_FIT_PARAM_NAME : 64];
+  const char *unit, *meaning; // unit: NULL for words
+};
+
+/* A word at voltage k: "centre_z_m", of several voltages "centre_z_m@6000". */
+static void name_at(const struct dea_design_space *space, const char *word, size_t k, char *out,
+                    size_t size)
 {
-  struct dea_text out = {.ctx = w->ctx};
-  char name[64];
-  dea_text_add(&out, "case,id");
+  if (space->voltage_count == 1) {
+    snprintf(out, size, "%s", word);
+  } else {
+    snprintf(out, size, "%s@%.6g", word, space->voltages_V[k]);
+  }
+}
+
+static size_t list_columns(const struct work *w, struct column *out)
+{
+  const struct dea_design_space *space = w->space;
+  struct column *next = out;
+  *next++ = (struct column){ID, 0, "id", NULL, "hash of the resolved design"};
   for (size_t j = 0; j < w->params; j++) {
-    const struct dea_device_param *param = &w->case_key->params[j];
-    dea_text_add(&out, ",%s (%s)", param->param.name, param->param.unit);
+    const struct dea_fit_param *param = &space->params[j].param;
+    *next = (struct column){VARIABLE, j, "", param->unit, "value in the design"};
+    snprintf(next->name, sizeof next->name, "%s", param->name);
+    next++;
   }
   for (size_t i = 0; i < w->values; i++) {
-    dea_case_key_value_name(w->case_key, i, name, sizeof name);
-    dea_text_add(&out, ",%s (%s)", name, unit_of(w, i));
+    const struct dea_explored *of = &space->quantities[i % space->quantity_count];
+    *next = (struct column){VALUE, i, "", of->shown.si_unit, of->shown.meaning};
+    name_at(space, of->key, i / space->quantity_count, next->name, sizeof next->name);
+    next++;
   }
-  dea_text_add(&out, ",time (s)");
-  for (size_t k = 0; k < w->case_key->voltage_count; k++) {
-    dea_case_key_flags_name(w->case_key, k, name, sizeof name);
-    dea_text_add(&out, ",%s", name);
+  *next++ = (struct column){TIME, 0, "time", "s", "of the evaluation"};
+  for (size_t k = 0; k < space->voltage_count; k++) {
+    *next = (struct column){FLAGS, k, "", NULL, "what a reader has to know of the numbers"};
+    name_at(space, "flags", k, next->name, sizeof next->name);
+    next++;
   }
-  dea_text_add(&out, ",reason\n");
+  *next++ = (struct column){REASON, 0, "reason", NULL, "why a value is missing"};
+  return (size_t)(next - out);
+}
+
+static double number_of(const struct column *column, const struct dea_case *done)
+{
+  return column->kind == VARIABLE ? done->p[column->i]
+         : column->kind == VALUE  ? done->q[column->i]
+                                  : done->wall_s;
+}
+
+static const char *words_of(const struct column *column, const struct dea_case *done,
+                            char words[DEA_FLAGS_SIZE])
+{
+  return column->kind == ID       ? done->id
+         : column->kind == REASON ? done->why
+                                  : dea_flags_text(done->marks[column->i], words);
+}
+
+static dea_status write_csv(const struct work *w, const struct column *columns, size_t count)
+{
+  struct dea_text out = {.ctx = w->ctx};
+  char words[DEA_FLAGS_SIZE];
+  dea_text_add(&out, "case");
+  for (size_t k = 0; k < count; k++) {
+    const char *unit = columns[k].unit;
+    dea_text_add(&out, unit != NULL ? ",%s (%s)" : ",%s", columns[k].name, unit);
+  }
+  dea_text_add(&out, "\n");
   for (size_t c = 0; c < w->plan->count; c++) {
-    const struct dea_case *done = case_of(w, c);
+    const struct dea_case *done = w->plan->cases[c];
     if (done == NULL) {
       continue;
     }
-    dea_text_add(&out, "%zu,%s", c, done->id);
-    for (size_t j = 0; j < w->params; j++) {
-      DEA_CSV_ADD(&out, 12, done->p[j]);
+    dea_text_add(&out, "%zu", c);
+    for (size_t k = 0; k < count; k++) {
+      if (columns[k].unit == NULL) {
+        dea_text_add(&out, ",%s", words_of(&columns[k], done, words));
+      } else {
+        DEA_CSV_ADD(&out, columns[k].kind == TIME ? 4 : 12, number_of(&columns[k], done));
+      }
     }
-    for (size_t i = 0; i < w->values; i++) {
-      DEA_CSV_ADD(&out, 12, done->q[i]);
-    }
-    dea_text_add(&out, ",%.4g", done->wall_s);
-    for (size_t k = 0; k < w->case_key->voltage_count; k++) {
-      char words[DEA_FLAGS_SIZE];
-      dea_text_add(&out, ",%s", dea_flags_text(done->marks[k], words));
-    }
-    dea_text_add(&out, ",%s\n", done->why);
+    dea_text_add(&out, "\n");
   }
   dea_status status = dea_text_write(w->ctx, &out, w->folder, "cases.csv");
   dea_text_free(&out);
   return status;
 }
 
-/* A column of numbers: a variable, or with `values` a value. to: room for all rows. */
-static void write_numbers(struct h5 *h, const struct work *w, hid_t group, double *to, bool values,
-                          size_t i)
+static void write_column(struct h5 *h, const struct work *w, hid_t group,
+                         const struct column *column, size_t rows)
 {
-  const struct dea_device_param *param = &w->case_key->params[values ? 0 : i];
-  const struct dea_column *of = &w->case_key->quantities[i % w->case_key->quantity_count].shown;
-  char name[64];
-  size_t rows = 0;
-  for (size_t c = 0; c < w->plan->count; c++) {
-    const struct dea_case *done = case_of(w, c);
-    if (done != NULL) {
-      to[rows++] = values ? done->q[i] : done->p[i];
-    }
-  }
-  dea_case_key_value_name(w->case_key, i, name, sizeof name);
-  dea_h5_write_array(h, group, values ? name : param->param.name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE,
-                     rows, to, values ? of->si_unit : param->param.unit,
-                     values ? of->meaning : "value in the design");
-}
-
-enum { ID, REASON, FLAGS }; // FLAGS + k: at voltage k
-
-/* A column of words. */
-static void write_texts(struct h5 *h, const struct work *w, hid_t group, size_t rows, size_t what)
-{
-  static const struct {
-    size_t size;
-    const char *name, *meaning;
-  } kinds[] = {{DEA_CASE_ID_SIZE, "id", "hash of the resolved design"},
-               {DEA_CASE_WHY_SIZE, "reason", "why a value is missing"},
-               {DEA_FLAGS_SIZE, NULL, "what a reader has to know of the numbers"}};
-  const size_t kind = what < FLAGS ? what : FLAGS, size = kinds[kind].size;
-  char name[64], words[DEA_FLAGS_SIZE], *texts = dea_alloc(w->ctx, rows, size);
-  size_t row = 0;
-  if (texts == NULL) {
+  const bool is_number = column->unit != NULL;
+  const size_t size = is_number                ? sizeof(double)
+                      : column->kind == ID     ? DEA_CASE_ID_SIZE
+                      : column->kind == REASON ? DEA_CASE_WHY_SIZE
+                                               : DEA_FLAGS_SIZE;
+  char words[DEA_FLAGS_SIZE], *cells = dea_alloc(w->ctx, rows, size), *next = cells;
+  if (cells == NULL) {
     h->status = DEA_E_MEMORY;
     return;
   }
   for (size_t c = 0; c < w->plan->count; c++) {
-    const struct dea_case *done = case_of(w, c);
-    if (done != NULL) {
-      snprintf(texts + size * row++, size, "%s",
-               kind == FLAGS ? dea_flags_text(done->marks[what - FLAGS], words)
-               : what == ID  ? done->id
-                             : done->why);
+    const struct dea_case *done = w->plan->cases[c];
+    if (done != NULL && is_number) {
+      const double number = number_of(column, done);
+      memcpy(next, &number, size);
+    } else if (done != NULL) {
+      snprintf(next, size, "%s", words_of(column, done, words));
     }
+    next += done != NULL ? size : 0;
   }
-  if (kind == FLAGS) {
-    dea_case_key_flags_name(w->case_key, what - FLAGS, name, sizeof name);
-  }
-  hid_t type = H5Tcopy(H5T_C_S1);
+  hid_t type = H5Tcopy(is_number ? H5T_NATIVE_DOUBLE : H5T_C_S1);
   H5Tset_size(type, size);
-  dea_h5_write_array(h, group, kind == FLAGS ? name : kinds[kind].name, type, type, rows, texts,
-                     "1", kinds[kind].meaning);
+  dea_h5_write_array(h, group, column->name, type, is_number ? H5T_IEEE_F64LE : type, rows, cells,
+                     is_number ? column->unit : "1", column->meaning);
   dea_h5_close(type);
-  dea_free(w->ctx, texts);
+  dea_free(w->ctx, cells);
 }
 
-static dea_status write_h5(const struct work *w)
+static dea_status write_h5(const struct work *w, const struct column *columns, size_t count)
 {
   struct h5 h;
   size_t rows = 0;
   char *path = dea_path_join(w->ctx, w->folder, "cases.h5");
+  DEA_TRY_MEMORY(path != NULL);
   for (size_t c = 0; c < w->plan->count; c++) {
-    rows += case_of(w, c) != NULL ? 1U : 0U;
-  }
-  double *column = dea_alloc(w->ctx, rows, sizeof *column);
-  if (path == NULL || column == NULL) {
-    dea_free(w->ctx, column);
-    dea_free(w->ctx, path);
-    return DEA_E_MEMORY;
+    rows += w->plan->cases[c] != NULL ? 1U : 0U;
   }
   dea_h5_begin(&h, w->ctx, path);
   hid_t file = dea_h5_file_create(&h);
-  dea_h5_write_text(&h, file, "question", w->case_key->hash);
-  dea_h5_write_text(&h, file, "model", w->case_key->model.type->name);
+  dea_h5_write_text(&h, file, "question", w->space->hash);
+  dea_h5_write_text(&h, file, "model", w->space->model.type->name);
   hid_t group = dea_h5_group_create(&h, file, "cases");
-  if (rows > 0) {
-    write_texts(&h, w, group, rows, ID);
-    for (size_t j = 0; j < w->params; j++) {
-      write_numbers(&h, w, group, column, false, j);
+  for (size_t k = 0; k < count && rows > 0; k++) {
+    if (columns[k].kind != TIME) { // the same cases give the same bytes
+      write_column(&h, w, group, &columns[k], rows);
     }
-    for (size_t i = 0; i < w->values; i++) {
-      write_numbers(&h, w, group, column, true, i);
-    }
-    for (size_t k = 0; k < w->case_key->voltage_count; k++) {
-      write_texts(&h, w, group, rows, FLAGS + k);
-    }
-    write_texts(&h, w, group, rows, REASON);
   }
   dea_h5_close(group);
   dea_h5_file_write(&h, file);
   dea_h5_end(&h);
-  dea_free(w->ctx, column);
   dea_free(w->ctx, path);
   return h.status;
+}
+
+static dea_status write_cases(struct work *w)
+{
+  struct column *columns = dea_arena_alloc(
+      &w->memory, 3 + w->params + w->values + w->space->voltage_count, sizeof *columns);
+  DEA_TRY_MEMORY(columns != NULL);
+  const size_t count = list_columns(w, columns);
+  DEA_TRY(w->ctx, write_csv(w, columns, count));
+  return write_h5(w, columns, count);
 }
 
 // What samples say --------------------------------------------------------------------------------
@@ -231,55 +240,40 @@ void dea_sobol_index(const double *a, const double *b, const double *ab, size_t 
   *total = of_total / (2 * n * variance);
 }
 
-/* Values i of the cases from first on, [count]; NAN where a case is not done. */
-static void get_values(const struct work *w, size_t i, size_t first, size_t count, double *out)
+/* Values i of all cases; NAN where one is not done. */
+static void get_values(const struct work *w, size_t i, double *out)
 {
-  for (size_t c = 0; c < count; c++) {
-    const struct dea_case *done = case_of(w, first + c);
-    out[c] = done != NULL ? done->q[i] : NAN;
+  for (size_t c = 0; c < w->plan->count; c++) {
+    out[c] = w->plan->cases[c] != NULL ? w->plan->cases[c]->q[i] : NAN;
   }
 }
 
 /* Number of samples that are independent: of indices A and B. */
 static size_t independent(const struct work *w)
 {
-  return w->case_key->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
+  return w->space->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
 }
 
-/* Independent samples whose numbers at voltage k are not to be trusted. */
-static size_t doubted_at(const struct work *w, size_t k)
+static dea_status write_statistics(struct work *w, double *values)
 {
-  size_t count = 0;
-  for (size_t c = 0; c < independent(w); c++) {
-    const struct dea_case *done = case_of(w, c);
-    count += done != NULL && dea_flags_have(done->marks[k], DEA_FLAG_DOUBT) ? 1U : 0U;
-  }
-  return count;
-}
-
-static dea_status write_statistics(const struct work *w, const size_t *doubted, double *values,
-                                   struct dea_spread *spreads)
-{
+  const struct dea_design_space *space = w->space;
   struct dea_text out = {.ctx = w->ctx};
   dea_status status = DEA_OK;
-  char name[64];
   dea_text_add(&out, "quantity,unit,V (kV),samples,mean,std");
   for (size_t k = 0; k < DEA_SHARES; k++) {
     dea_text_add(&out, ",%g %%", 100 * dea_shares[k]);
   }
   dea_text_add(&out, ",doubted\n");
   for (size_t i = 0; i < w->values && status == DEA_OK; i++) {
-    get_values(w, i, 0, independent(w), values);
-    status = dea_spread_find(w->ctx, values, independent(w), &spreads[i]);
-    dea_case_key_value_name(w->case_key, i, name, sizeof name);
-    name[strcspn(name, "@")] = '\0';
-    dea_text_add(&out, "%s,%s,%.6g,%zu", name, unit_of(w, i),
-                 1e-3 * w->case_key->voltages_V[i / w->case_key->quantity_count], spreads[i].count);
-    DEA_CSV_ADD(&out, 12, spreads[i].mean, spreads[i].std);
-    for (size_t k = 0; k < DEA_SHARES; k++) {
-      DEA_CSV_ADD(&out, 12, spreads[i].quantile[k]);
-    }
-    dea_text_add(&out, ",%zu\n", doubted[i / w->case_key->quantity_count]);
+    const struct dea_explored *of = &space->quantities[i % space->quantity_count];
+    const size_t voltage = i / space->quantity_count;
+    get_values(w, i, values);
+    status = dea_spread_find(w->ctx, values, independent(w), &w->spreads[i]);
+    dea_text_add(&out, "%s,%s,%.6g,%zu", of->key, of->shown.si_unit,
+                 1e-3 * space->voltages_V[voltage], w->spreads[i].count);
+    DEA_CSV_ADD(&out, 12, w->spreads[i].mean, w->spreads[i].std);
+    dea_csv_add_numbers(&out, 12, w->spreads[i].quantile, DEA_SHARES);
+    dea_text_add(&out, ",%zu\n", w->doubted[voltage]);
   }
   status = status == DEA_OK ? dea_text_write(w->ctx, &out, w->folder, "statistics.csv") : status;
   dea_text_free(&out);
@@ -292,23 +286,23 @@ static dea_status write_limits(const struct work *w)
 {
   struct dea_text out = {.ctx = w->ctx};
   dea_text_add(&out, "quantity,above,below,samples,crossed,probability,standard error\n");
-  for (size_t l = 0; l < w->case_key->limit_count; l++) {
-    const struct dea_limit *limit = &w->case_key->limits[l];
+  for (size_t l = 0; l < w->space->limit_count; l++) {
+    const struct dea_limit *limit = &w->space->limits[l];
     size_t n = 0, crossed = 0;
     for (size_t c = 0; c < independent(w); c++) {
-      const struct dea_case *done = case_of(w, c);
+      const struct dea_case *done = w->plan->cases[c];
       n += done != NULL ? 1U : 0U;
-      crossed += done != NULL && !(dea_limit_margin(w->case_key, limit, done->q) >= 0) ? 1U : 0U;
+      crossed += done != NULL && !(dea_limit_margin(w->space, limit, done->q) >= 0) ? 1U : 0U;
     }
     const double share = (double)crossed / (double)n;
-    dea_text_add(&out, "%s", w->case_key->quantities[limit->column].key);
+    dea_text_add(&out, "%s", w->space->quantities[limit->column].key);
     DEA_CSV_ADD(&out, 12, limit->above, limit->below);
     dea_text_add(&out, ",%zu,%zu", n, crossed);
     DEA_CSV_ADD(&out, 12, share, sqrt(share * (1 - share) / (double)n));
     dea_text_add(&out, "\n");
   }
   dea_status status =
-      w->case_key->limit_count > 0 ? dea_text_write(w->ctx, &out, w->folder, "limits.csv") : DEA_OK;
+      w->space->limit_count > 0 ? dea_text_write(w->ctx, &out, w->folder, "limits.csv") : DEA_OK;
   dea_text_free(&out);
   return status;
 }
@@ -316,16 +310,18 @@ static dea_status write_limits(const struct work *w)
 static dea_status write_indices(const struct work *w, double *values)
 {
   struct dea_text out = {.ctx = w->ctx};
+  const struct dea_design_space *space = w->space;
   const size_t n = w->plan->samples;
   char name[64];
   dea_text_add(&out, "quantity,variable,first,total\n");
   for (size_t i = 0; i < w->values; i++) {
-    get_values(w, i, 0, w->plan->count, values);
-    dea_case_key_value_name(w->case_key, i, name, sizeof name);
+    get_values(w, i, values);
+    name_at(space, space->quantities[i % space->quantity_count].key, i / space->quantity_count,
+            name, sizeof name);
     for (size_t j = 0; j < w->params; j++) {
       double first, total;
       dea_sobol_index(values, values + n, values + (2 + j) * n, n, &first, &total);
-      dea_text_add(&out, "%s,%s", name, w->case_key->params[j].param.name);
+      dea_text_add(&out, "%s,%s", name, space->params[j].param.name);
       DEA_CSV_ADD(&out, 12, first, total);
       dea_text_add(&out, "\n");
     }
@@ -335,63 +331,47 @@ static dea_status write_indices(const struct work *w, double *values)
   return status;
 }
 
-// Bands of quantities at several voltages ---------------------------------------------------------
+// Bands of a quantity at several voltages ---------------------------------------------------------
 
-/* Spreads of a quantity at all voltages and how it is shown. */
-struct shown {
-  const struct dea_case_key *case_key;
-  const struct dea_spread *spreads; // of the quantity: [voltages * quantities] from it on
-  const struct dea_column *column;
-  size_t samples;
-  const size_t *doubted; // [voltages]
-};
-
-/* Puts quantiles `low` and its opposite at voltage v. */
-static void add_point(const struct shown *shown, size_t v, size_t low, struct dea_series *out)
+/* Puts quantiles `low` and its opposite of quantity i at voltage v. */
+static void add_point(const struct work *w, size_t i, size_t v, size_t low, struct dea_series *out)
 {
-  const size_t n = shown->case_key->voltage_count;
-  const double *quantile = shown->spreads[v * shown->case_key->quantity_count].quantile;
-  out->values[v] = 1e-3 * shown->case_key->voltages_V[v];
-  out->values[n + v] = shown->column->factor * quantile[low];
-  out->values[2 * n + v] = shown->column->factor * quantile[DEA_SHARES - 1 - low];
+  const struct dea_design_space *space = w->space;
+  const size_t n = space->voltage_count;
+  const double *quantile = w->spreads[v * space->quantity_count + i].quantile;
+  out->values[v] = 1e-3 * space->voltages_V[v];
+  out->values[n + v] = space->quantities[i].shown.factor * quantile[low];
+  out->values[2 * n + v] = space->quantities[i].shown.factor * quantile[DEA_SHARES - 1 - low];
 }
 
-static dea_status add_bands(const struct shown *shown, struct dea_panel *panel)
+static dea_status add_bands(const struct work *w, size_t i, struct dea_panel *panel)
 {
   static const char *const titles[] = {"95 %", "68 %"};
   static const enum dea_colour colours[] = {DEA_GREY, DEA_VERMILLION};
-  const size_t n = shown->case_key->voltage_count;
+  const size_t n = w->space->voltage_count;
   for (size_t k = 0; k < 2; k++) { // from the outer pair inwards
     struct dea_series *band;
-    DEA_TRY(shown->case_key->ctx,
-            dea_panel_add(shown->case_key->ctx, panel, n, DEA_BAND, colours[k], titles[k], &band));
+    DEA_TRY(w->ctx, dea_panel_add(w->ctx, panel, n, DEA_BAND, colours[k], titles[k], &band));
     for (size_t v = 0; v < n; v++) {
-      add_point(shown, v, k, band);
+      add_point(w, i, v, k, band);
     }
   }
   return DEA_OK;
 }
 
-/* Whether a voltage has samples that are not to be trusted; none lies beyond the last one. */
-static bool is_doubted(const struct shown *shown, size_t v)
-{
-  return v < shown->case_key->voltage_count && shown->doubted[v] > 0;
-}
-
 /* The median where all samples are to be trusted, or dashed where some are not, up to the points
  * beside these. */
-static dea_status add_line(const struct shown *shown, struct dea_panel *panel, bool dashed,
+static dea_status add_line(const struct work *w, size_t i, struct dea_panel *panel, bool dashed,
                            const char *title)
 {
-  const size_t n = shown->case_key->voltage_count;
+  const size_t n = w->space->voltage_count;
   struct dea_series *line;
-  DEA_TRY(shown->case_key->ctx,
-          dea_panel_add(shown->case_key->ctx, panel, n, dashed ? DEA_DASHED : DEA_LINE_MARKED,
-                        DEA_BLUE, title, &line));
+  DEA_TRY(w->ctx, dea_panel_add(w->ctx, panel, n, dashed ? DEA_DASHED : DEA_LINE_MARKED, DEA_BLUE,
+                                title, &line));
   for (size_t v = 0; v < n; v++) {
-    const bool beside = (v > 0 && is_doubted(shown, v - 1)) || is_doubted(shown, v + 1);
-    if (dashed ? is_doubted(shown, v) || beside : !is_doubted(shown, v)) {
-      add_point(shown, v, DEA_SHARES / 2, line);
+    const bool beside = (v > 0 && w->doubted[v - 1] > 0) || (v + 1 < n && w->doubted[v + 1] > 0);
+    if (dashed ? w->doubted[v] > 0 || beside : w->doubted[v] == 0) {
+      add_point(w, i, v, DEA_SHARES / 2, line);
     }
   }
   return DEA_OK;
@@ -399,56 +379,52 @@ static dea_status add_line(const struct shown *shown, struct dea_panel *panel, b
 
 /* Samples without a value are in neither median nor bands, and those that are not to be trusted
  * are: the key says both. */
-static dea_status add_median(const struct shown *shown, struct dea_panel *panel)
+static dea_status add_median(const struct work *w, size_t i, struct dea_panel *panel)
 {
-  size_t most = 0, least = shown->samples, good = 0;
+  const size_t samples = independent(w);
+  size_t most = 0, least = samples, good = 0;
   char median[64] = "median", doubts[62], both[DEA_LABEL_SIZE];
-  for (size_t v = 0; v < shown->case_key->voltage_count; v++) {
-    const size_t count = shown->spreads[v * shown->case_key->quantity_count].count;
-    most = shown->doubted[v] > most ? shown->doubted[v] : most;
+  for (size_t v = 0; v < w->space->voltage_count; v++) {
+    const size_t count = w->spreads[v * w->space->quantity_count + i].count;
+    most = w->doubted[v] > most ? w->doubted[v] : most;
     least = count < least ? count : least;
-    good += is_doubted(shown, v) ? 0U : 1U;
+    good += w->doubted[v] > 0 ? 0U : 1U;
   }
-  if (least < shown->samples) {
-    snprintf(median, sizeof median, "median of %zu or more of %zu", least, shown->samples);
+  if (least < samples) {
+    snprintf(median, sizeof median, "median of %zu or more of %zu", least, samples);
   }
-  snprintf(doubts, sizeof doubts, "up to %zu of %zu not to be trusted", most, shown->samples);
+  snprintf(doubts, sizeof doubts, "up to %zu of %zu not to be trusted", most, samples);
   if (good == 0) {
     snprintf(both, sizeof both, "%s, %s", median, doubts);
-    return add_line(shown, panel, true, both);
+    return add_line(w, i, panel, true, both);
   }
-  DEA_TRY(shown->case_key->ctx, add_line(shown, panel, false, median));
-  return most > 0 ? add_line(shown, panel, true, doubts) : DEA_OK;
+  DEA_TRY(w->ctx, add_line(w, i, panel, false, median));
+  return most > 0 ? add_line(w, i, panel, true, doubts) : DEA_OK;
 }
 
-static dea_status fill_panel(const struct shown *shown, struct dea_panel *panel)
+static dea_status fill_panel(const struct work *w, size_t i, struct dea_panel *panel)
 {
-  DEA_TRY(shown->case_key->ctx, add_bands(shown, panel));
-  DEA_TRY(shown->case_key->ctx, add_median(shown, panel));
-  dea_figure_label(shown->column, panel->y_label, sizeof panel->y_label);
+  DEA_TRY(w->ctx, add_bands(w, i, panel));
+  DEA_TRY(w->ctx, add_median(w, i, panel));
+  dea_figure_label(&w->space->quantities[i].shown, panel->y_label, sizeof panel->y_label);
   dea_panel_voltage_axis(panel);
   dea_panel_place_key(panel);
   return DEA_OK;
 }
 
-/* Figures band_KEY of spreads [voltages][quantities] of so many samples, into a folder. doubted:
- * [voltages], samples whose numbers are not to be trusted there. */
-static dea_status draw(const struct dea_case_key *case_key, const struct dea_spread *spreads,
-                       size_t samples, const size_t *doubted, const struct dea_plot_format *format,
-                       const char *folder)
+/* Figures band_KEY. */
+static dea_status draw(const struct work *w)
 {
-  struct dea_plot_folder list = {.ctx = case_key->ctx, .format = format, .path = folder};
+  struct dea_plot_folder list = {.ctx = w->ctx, .format = w->format, .path = w->folder};
   dea_status status = DEA_OK;
-  for (size_t i = 0; i < case_key->quantity_count && status == DEA_OK; i++) {
+  for (size_t i = 0; i < w->space->quantity_count && status == DEA_OK; i++) {
     struct dea_plot *plot;
     char name[64];
-    const struct shown shown = {case_key, spreads + i, &case_key->quantities[i].shown, samples,
-                                doubted};
-    snprintf(name, sizeof name, "band_%.50s", case_key->quantities[i].key);
-    status = dea_plot_create(case_key->ctx, name,
+    snprintf(name, sizeof name, "band_%.50s", w->space->quantities[i].key);
+    status = dea_plot_create(w->ctx, name,
                              "median of the samples, and where 68 and 95 % of them lie", &plot);
     if (status == DEA_OK) {
-      status = dea_plot_folder_add(&list, plot, fill_panel(&shown, &plot->panels[0]));
+      status = dea_plot_folder_add(&list, plot, fill_panel(w, i, &plot->panels[0]));
     }
   }
   return dea_plot_folder_draw(&list, status);
@@ -456,48 +432,43 @@ static dea_status draw(const struct dea_case_key *case_key, const struct dea_spr
 
 // All of it ---------------------------------------------------------------------------------------
 
-static dea_status write_all(const struct work *w)
+/* What samples say. */
+static dea_status write_samples(struct work *w)
 {
-  DEA_TRY(w->ctx, write_cases(w));
-  DEA_TRY(w->ctx, write_h5(w));
-  if (w->case_key->file->plan.value <= DEA_PLAN_SPARSE || w->case_key->file->objective_count > 0) {
-    return DEA_OK;
+  double *values = dea_arena_alloc(&w->memory, w->plan->count, sizeof *values);
+  w->spreads = dea_arena_alloc(&w->memory, w->values, sizeof *w->spreads);
+  DEA_TRY(w->ctx, dea_arena_status(&w->memory));
+  for (size_t c = 0; c < independent(w); c++) {
+    const struct dea_case *done = w->plan->cases[c];
+    for (size_t k = 0; k < w->space->voltage_count && done != NULL; k++) {
+      w->doubted[k] += dea_flags_have(done->marks[k], DEA_FLAG_DOUBT) ? 1U : 0U;
+    }
   }
-  size_t doubted[DEA_EXPLORE_VOLTAGES_MAX] = {0};
-  for (size_t k = 0; k < w->case_key->voltage_count; k++) {
-    doubted[k] = doubted_at(w, k);
+  DEA_TRY(w->ctx, write_statistics(w, values));
+  DEA_TRY(w->ctx, write_limits(w));
+  if (w->space->file->plan.value == DEA_PLAN_INDICES) {
+    DEA_TRY(w->ctx, write_indices(w, values));
   }
-  double *values = dea_alloc(w->ctx, w->plan->count, sizeof *values);
-  struct dea_spread *spreads = dea_alloc(w->ctx, w->values, sizeof *spreads);
-  dea_status status = values != NULL && spreads != NULL
-                          ? write_statistics(w, doubted, values, spreads)
-                          : DEA_E_MEMORY;
-  status = status == DEA_OK ? write_limits(w) : status;
-  if (status == DEA_OK && w->case_key->file->plan.value == DEA_PLAN_INDICES) {
-    status = write_indices(w, values);
-  }
-  if (status == DEA_OK && w->case_key->voltage_count > 1) {
-    status = draw(w->case_key, spreads, independent(w), doubted, w->format, w->folder);
-  }
-  dea_free(w->ctx, spreads);
-  dea_free(w->ctx, values);
-  return status;
+  return w->space->voltage_count > 1 ? draw(w) : DEA_OK;
 }
 
-dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,
-                           const struct dea_store *store, const struct dea_plot_format *format,
-                           const char *folder)
+dea_status dea_sweep_write(const struct dea_design_space *space, const struct dea_plan *plan,
+                           const struct dea_plot_format *format, const char *folder)
 {
-  const struct work w = {case_key,
-                         plan,
-                         store,
-                         format,
-                         folder,
-                         case_key->ctx,
-                         case_key->variable_count,
-                         case_key->evaluator.value_count};
+  struct work w = {.ctx = space->ctx,
+                   .space = space,
+                   .plan = plan,
+                   .format = format,
+                   .folder = folder,
+                   .memory = {.ctx = space->ctx},
+                   .params = space->variable_count,
+                   .values = space->evaluator.value_count};
+  const bool samples =
+      space->file->plan.value > DEA_PLAN_SPARSE && space->file->objective_count == 0;
   void *before = dea_c_locale_enter();
-  dea_status status = write_all(&w);
+  dea_status status = write_cases(&w);
+  status = status == DEA_OK && samples ? write_samples(&w) : status;
   dea_c_locale_leave(before);
+  dea_arena_free(&w.memory);
   return status;
 }

@@ -1,5 +1,5 @@
-/* A server for one user on this computer: designs and runs of a folder in a page (docs/studio.md).
- */
+/* A server for one user on this computer: designs and runs of the current folder in a page
+ * (docs/studio.md). */
 #pragma once
 
 #include "base/context.h"
@@ -12,7 +12,6 @@ struct dea_studio_example {
 
 /* All lent, and constant while the studio is there. */
 struct dea_studio_options {
-  const char *folder;                        // its files are shown and written, and no others
   const char *open;                          // name of the design that is shown first; NULL: none
   const char *program;                       // the command that checks and runs
   int port;                                  // of 127.0.0.1; 0: a free one
@@ -22,7 +21,8 @@ struct dea_studio_options {
 
 struct dea_studio;
 
-/* Starts to serve. DEA_E_IO where the folder or the port cannot be had. out: owned by the caller,
+/* Starts to serve the current folder, whose files are shown and written, and no others; it stays
+ * the current one. DEA_E_IO where the folder or the port cannot be had. out: owned by the caller,
  * NULL on failure. */
 dea_status dea_studio_start(struct dea_context *ctx, const struct dea_studio_options *options,
                             struct dea_studio **out);

@@ -51,10 +51,9 @@ void dea_studio_line_show(const struct dea_studio_line *line, struct dea_text *o
 
 // Processes ---------------------------------------------------------------------------------------
 
-/* Starts the command in the folder, in a group of its own; out, err: what it writes to. It dies
- * with the thread that calls this. */
-static pid_t start(const char *program, int folder, const struct dea_studio_line *line, int out,
-                   int err)
+/* Starts the command, in a group of its own; out, err: what it writes to. It dies with the thread
+ * that calls this. */
+static pid_t start(const char *program, const struct dea_studio_line *line, int out, int err)
 {
   const char *argv[DEA_STUDIO_ARGUMENTS] = {program};
   size_t count = 1;
@@ -66,9 +65,8 @@ static pid_t start(const char *program, int folder, const struct dea_studio_line
   if (pid == 0) {                     // only what a process of several threads may call here
     prctl(PR_SET_PDEATHSIG, SIGKILL); // what a run has kept is whole at any time
     signal(SIGINT, SIG_DFL);
-    if (getppid() != parent || setpgid(0, 0) != 0 || fchdir(folder) != 0 ||
-        dup2(nothing, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0 ||
-        dup2(err, STDERR_FILENO) < 0) {
+    if (getppid() != parent || setpgid(0, 0) != 0 || dup2(nothing, STDIN_FILENO) < 0 ||
+        dup2(out, STDOUT_FILENO) < 0 || dup2(err, STDERR_FILENO) < 0) {
       _exit(127);
     }
     execv(program, (char *const *)argv);
@@ -91,13 +89,12 @@ static void read_all(int file, struct dea_text *out)
   dea_text_add_bytes(out, "", 0); // a text also without any
 }
 
-dea_status dea_studio_run_command(struct dea_context *ctx, const char *program, int folder,
+dea_status dea_studio_run_command(struct dea_context *ctx, const char *program,
                                   const struct dea_studio_line *line, double limit_s,
                                   struct dea_text *out, struct dea_text *err, int *code)
 {
   const int files[2] = {memfd_create("out", MFD_CLOEXEC), memfd_create("err", MFD_CLOEXEC)};
-  const pid_t pid =
-      files[0] >= 0 && files[1] >= 0 ? start(program, folder, line, files[0], files[1]) : -1;
+  const pid_t pid = files[0] >= 0 && files[1] >= 0 ? start(program, line, files[0], files[1]) : -1;
   const double began_s = dea_clock_s();
   int state = 0;
   pid_t ended = 0;
@@ -125,7 +122,7 @@ dea_status dea_studio_run_command(struct dea_context *ctx, const char *program, 
 
 // The queue ---------------------------------------------------------------------------------------
 
-enum { JOBS_MAX = 48, SAID_MAX = 6000, LAST_LINE = 160, NAME_SIZE = 256, PATIENCE_S = 10 };
+enum { JOBS_MAX = 48, SAID_MAX = 6000, LAST_LINE = 160, PATIENCE_S = 10 };
 
 enum state { WAITING, RUNNING, DONE, FAILED, STOPPED };
 static const char *const states[] = {"waiting", "running", "done", "failed", "stopped"};
@@ -133,7 +130,7 @@ static const char *const states[] = {"waiting", "running", "done", "failed", "st
 struct job {
   int id;
   enum state state;
-  char action[16], subject[NAME_SIZE], output[NAME_SIZE];
+  json_t *facts;
   struct dea_studio_line line;
   pid_t process;
   int terminal; // that it writes to
@@ -147,7 +144,6 @@ struct job {
 
 struct dea_studio_jobs {
   const char *program;
-  int folder;
   int cores;
   int last_id;
   pthread_mutex_t lock;
@@ -155,8 +151,7 @@ struct dea_studio_jobs {
   struct job jobs[JOBS_MAX];
 };
 
-struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const char *program,
-                                               int folder)
+struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const char *program)
 {
   struct dea_studio_jobs *jobs = dea_alloc(ctx, 1, sizeof *jobs);
   const long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -164,7 +159,6 @@ struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const ch
     return NULL;
   }
   jobs->program = program;
-  jobs->folder = folder;
   jobs->cores = cores > 1 ? (int)cores : 1;
   if (pthread_mutex_init(&jobs->lock, NULL) != 0) {
     dea_fail(ctx, DEA_E_IO, "no queue: %s", strerror(errno));
@@ -179,6 +173,7 @@ static bool reserve(struct dea_studio_jobs *jobs)
 {
   for (size_t i = 0; i < jobs->count && jobs->count == JOBS_MAX; i++) {
     if (jobs->jobs[i].state > RUNNING) {
+      json_decref(jobs->jobs[i].facts);
       jobs->count--;
       memmove(&jobs->jobs[i], &jobs->jobs[i + 1], (jobs->count - i) * sizeof jobs->jobs[0]);
     }
@@ -186,25 +181,31 @@ static bool reserve(struct dea_studio_jobs *jobs)
   return jobs->count < JOBS_MAX;
 }
 
-int dea_studio_jobs_add(struct dea_studio_jobs *jobs, const char *action, const char *subject,
-                        const char *output, const struct dea_studio_line *line)
+/* The folder or file that a job writes. */
+static const char *output_of(const json_t *facts)
+{
+  return json_string_value(json_object_get(facts, "output"));
+}
+
+int dea_studio_jobs_add(struct dea_studio_jobs *jobs, json_t *facts,
+                        const struct dea_studio_line *line)
 {
   int id = 0;
-  bool free_place = true;
+  bool free_place = facts != NULL;
   pthread_mutex_lock(&jobs->lock);
   for (size_t i = 0; i < jobs->count; i++) {
     const struct job *other = &jobs->jobs[i];
-    free_place = free_place && !(other->state <= RUNNING && strcmp(other->output, output) == 0);
+    free_place = free_place && !(other->state <= RUNNING &&
+                                 strcmp(output_of(other->facts), output_of(facts)) == 0);
   }
   if (free_place && !line->full && reserve(jobs)) {
-    struct job *job = &jobs->jobs[jobs->count++];
-    *job = (struct job){.id = ++jobs->last_id, .line = *line, .terminal = -1};
-    snprintf(job->action, sizeof job->action, "%s", action);
-    snprintf(job->subject, sizeof job->subject, "%s", subject);
-    snprintf(job->output, sizeof job->output, "%s", output);
-    id = job->id;
+    id = ++jobs->last_id;
+    json_object_set_new(facts, "id", json_integer(id));
+    jobs->jobs[jobs->count++] =
+        (struct job){.id = id, .facts = json_incref(facts), .line = *line, .terminal = -1};
   }
   pthread_mutex_unlock(&jobs->lock);
+  json_decref(facts);
   return id;
 }
 
@@ -237,17 +238,9 @@ bool dea_studio_jobs_stop(struct dea_studio_jobs *jobs, int id)
 
 static json_t *job_json(const struct job *job)
 {
-  struct dea_context *ctx = NULL;
-  json_t *json = json_pack("{s:i, s:s, s:s, s:s, s:s, s:i}", "id", job->id, "action", job->action,
-                           "subject", job->subject, "output", job->output, "state",
-                           states[job->state], "code", job->code);
-  if (dea_context_create(NULL, &ctx) == DEA_OK) {
-    struct dea_text command = {.ctx = ctx};
-    dea_studio_line_show(&job->line, &command);
-    json_object_set_new(json, "command", json_string(dea_text_get(&command)));
-    dea_text_free(&command);
-    dea_context_destroy(ctx);
-  }
+  json_t *json = json_deep_copy(job->facts);
+  json_object_set_new(json, "state", json_string(states[job->state]));
+  json_object_set_new(json, "code", json_integer(job->code));
   json_object_set_new(json, "progress", json_string(job->last));
   json_t *said = json_string(job->said); // NULL where its first letter was cut
   for (size_t skip = 1; said == NULL && skip < 4 && job->said[skip] != '\0'; skip++) {
@@ -296,8 +289,7 @@ static void begin(struct dea_studio_jobs *jobs, struct job *job)
 {
   int writes;
   job->terminal = open_terminal(&writes);
-  job->process =
-      job->terminal >= 0 ? start(jobs->program, jobs->folder, &job->line, writes, writes) : -1;
+  job->process = job->terminal >= 0 ? start(jobs->program, &job->line, writes, writes) : -1;
   job->state = job->process > 0 ? RUNNING : FAILED;
   if (writes >= 0) {
     close(writes);
@@ -408,6 +400,7 @@ void dea_studio_jobs_destroy(struct dea_context *ctx, struct dea_studio_jobs *jo
         notify(job);
       }
     }
+    json_decref(job->facts);
   }
   pthread_mutex_destroy(&jobs->lock);
   dea_free(ctx, jobs);

@@ -19,39 +19,29 @@
 
 static const char json_mime[] = "application/json", html_mime[] = "text/html; charset=utf-8";
 
-struct work;
-
 /* A question, and what its answer is of. */
-struct route {
+struct dea_studio_route {
   const char *method, *path;
-  void (*answer)(struct work *w);
+  void (*answer)(struct dea_studio_exchange *w);
   const char *type, *bytes; // of a part of the page
   const size_t *length;
   const char *command, *option, *ending; // a command, and the file that it writes of a design
   enum view { CURVES, FILM, SLIDERS } view;
 };
 
-/* What a route works with. */
-struct work {
-  const struct route *route;
-  struct dea_context *ctx;
-  struct dea_studio_folder *workspace;
-  const struct dea_studio_request *request;
-  struct dea_studio_reply *reply;
-};
-
 // Replies -----------------------------------------------------------------------------------------
 
-static void respond(struct work *w, int status, const char *type, const char *bytes, size_t length)
+static void respond(struct dea_studio_exchange *w, int status, const char *type, const char *bytes,
+                    size_t length)
 {
-  w->reply->status = status;
-  w->reply->type = type;
-  w->reply->body.length = 0;
-  dea_text_add_bytes(&w->reply->body, bytes, length);
+  w->status = status;
+  w->type = type;
+  w->reply.length = 0;
+  dea_text_add_bytes(&w->reply, bytes, length);
 }
 
 /* Takes it. */
-static void respond_json(struct work *w, int status, json_t *json)
+static void respond_json(struct dea_studio_exchange *w, int status, json_t *json)
 {
   char *text = json != NULL ? json_dumps(json, JSON_COMPACT) : NULL;
   respond(w, text != NULL ? status : 500, json_mime, text != NULL ? text : "{}",
@@ -61,14 +51,14 @@ static void respond_json(struct work *w, int status, json_t *json)
 }
 
 /* {error: text}; the texts of findings go before the message. */
-static void respond_error(struct work *w, int status, const char *text)
+static void respond_error(struct dea_studio_exchange *w, int status, const char *text)
 {
   respond_json(w, status, json_pack("{s:s}", "error", text));
 }
 
 /* What a file or a result says against it is an answer, too: browsers note what has no status 200.
  */
-static void respond_failure(struct work *w)
+static void respond_failure(struct dea_studio_exchange *w)
 {
   size_t count;
   const struct dea_finding *findings = dea_finding_get(w->ctx, &count);
@@ -87,13 +77,13 @@ static void respond_failure(struct work *w)
 // Arguments ---------------------------------------------------------------------------------------
 
 /* The i-th of that name in the address; NULL: there is none. */
-static const char *argument(const struct work *w, const char *name, size_t i)
+static const char *argument(const struct dea_studio_exchange *w, const char *name, size_t i)
 {
-  return json_string_value(json_array_get(json_object_get(w->request->arguments, name), i));
+  return json_string_value(json_array_get(json_object_get(w->arguments, name), i));
 }
 
 /* The name of a file in the folder; after an answer NULL. */
-static const char *file_argument(struct work *w, const char *name)
+static const char *file_argument(struct dea_studio_exchange *w, const char *name)
 {
   const char *file = argument(w, name, 0);
   if (file == NULL || !dea_studio_name_good(file, false)) {
@@ -104,18 +94,12 @@ static const char *file_argument(struct work *w, const char *name)
 }
 
 /* Whether what has a name in the folder is a folder itself, and no link to one. */
-static bool is_run(const struct work *w, const char *name)
+static bool is_run(const struct dea_studio_exchange *w, const char *name)
 {
   char results[DEA_STUDIO_STAMP], path[300];
   snprintf(path, sizeof path, "%s/results.h5", name);
-  dea_studio_stamp(w->workspace->folder, path, results);
+  dea_studio_stamp(w->studio->folder, path, results);
   return dea_studio_name_good(name, false) && results[0] != '\0';
-}
-
-/* Its path; owned by the caller. */
-static char *path_of(const struct work *w, const char *name)
-{
-  return dea_path_join(w->ctx, w->workspace->path, name);
 }
 
 /* Adds the name of a file to a command, which must not take it for an option. */
@@ -128,31 +112,31 @@ static void add_file(struct dea_studio_line *line, const char *name)
 
 // The page and its parts --------------------------------------------------------------------------
 
-static void get_part(struct work *w)
+static void get_part(struct dea_studio_exchange *w)
 {
   respond(w, 200, w->route->type, w->route->bytes, *w->route->length);
 }
 
 /* What there is: {folder, open, designs, runs, tables, folders, jobs}. */
-static void get_state(struct work *w)
+static void get_state(struct dea_studio_exchange *w)
 {
-  const char *open = w->workspace->options->open;
-  json_t *state = dea_studio_list(w->workspace->folder);
-  json_object_set_new(state, "folder", json_string(w->workspace->path));
+  const char *open = w->studio->options.open;
+  json_t *state = dea_studio_list(w->studio->folder);
+  json_object_set_new(state, "folder", json_string(w->studio->path));
   json_object_set_new(state, "open", json_string(open != NULL ? open : ""));
-  json_object_set_new(state, "jobs", dea_studio_jobs_json(w->workspace->jobs));
+  json_object_set_new(state, "jobs", dea_studio_jobs_json(w->studio->jobs));
   respond_json(w, 200, state);
 }
 
 // Designs and tables ------------------------------------------------------------------------------
 
 /* {text, version} of a file, without a text where it is not in UTF-8; NULL: there is none. */
-static json_t *file_json(struct work *w, const char *name)
+static json_t *file_json(struct dea_studio_exchange *w, const char *name)
 {
   struct dea_text bytes = {.ctx = w->ctx};
   char version[65];
   json_t *json = NULL;
-  if (dea_studio_read(w->ctx, w->workspace->folder, name, DEA_STUDIO_BODY_MAX, &bytes) == DEA_OK) {
+  if (dea_studio_read(w->ctx, w->studio->folder, name, DEA_STUDIO_BODY_MAX, &bytes) == DEA_OK) {
     dea_sha256_hex(bytes.data, bytes.length, version);
     json = json_pack("{s:s}", "version", version);
     json_object_set_new(json, "text", json_stringn(bytes.data, bytes.length));
@@ -161,7 +145,7 @@ static json_t *file_json(struct work *w, const char *name)
   return json;
 }
 
-static void get_design(struct work *w)
+static void get_design(struct dea_studio_exchange *w)
 {
   const char *name = file_argument(w, "name");
   if (name == NULL) {
@@ -177,16 +161,15 @@ static void get_design(struct work *w)
 }
 
 /* Whether the name is of a regular file or of nothing. */
-static bool can_write(const struct work *w, const char *name)
+static bool can_write(const struct dea_studio_exchange *w, const char *name)
 {
   struct stat file;
-  return fstatat(w->workspace->folder, name, &file, AT_SYMLINK_NOFOLLOW) != 0 ||
-         S_ISREG(file.st_mode);
+  return fstatat(w->studio->folder, name, &file, AT_SYMLINK_NOFOLLOW) != 0 || S_ISREG(file.st_mode);
 }
 
 /* Writes the body where the file is still the version that the page knows ("": none is there); else
  * says what is there: {changed, text, version}. */
-static void store_file(struct work *w)
+static void store_file(struct dea_studio_exchange *w)
 {
   const char *name = file_argument(w, "name"), *known = argument(w, "version", 0);
   if (name == NULL) {
@@ -196,7 +179,7 @@ static void store_file(struct work *w)
     respond_error(w, 403, "a folder or a link has that name");
     return;
   }
-  pthread_mutex_lock(&w->workspace->write_lock);
+  pthread_mutex_lock(&w->studio->write_lock);
   json_t *there = file_json(w, name);
   const char *version = there != NULL ? json_string_value(json_object_get(there, "version")) : "";
   if (strcmp(version, known != NULL ? known : "") != 0) {
@@ -206,21 +189,18 @@ static void store_file(struct work *w)
     respond_json(w, 200, other); // no failure, which a browser would note
   } else {
     char now[65];
-    char *path = path_of(w, name);
-    dea_sha256_hex(w->request->body, w->request->body_length, now);
-    if (path != NULL &&
-        dea_file_write(w->ctx, path, w->request->body, w->request->body_length) == DEA_OK) {
+    dea_sha256_hex(w->body, w->body_length, now);
+    if (dea_file_write(w->ctx, name, w->body, w->body_length) == DEA_OK) {
       respond_json(w, 200, json_pack("{s:s}", "version", now));
     } else {
       respond_failure(w);
     }
-    dea_free(w->ctx, path);
   }
   json_decref(there);
-  pthread_mutex_unlock(&w->workspace->write_lock);
+  pthread_mutex_unlock(&w->studio->write_lock);
 }
 
-static void get_file(struct work *w)
+static void get_file(struct dea_studio_exchange *w)
 {
   static const struct {
     const char *ending, *type;
@@ -234,9 +214,9 @@ static void get_file(struct work *w)
   const char *name = argument(w, "name", 0);
   const char *type = "application/octet-stream";
   enum { FILE_MAX = 256 << 20 };
-  w->reply->foreign = true;
+  w->foreign = true;
   if (name == NULL || !dea_studio_name_good(name, true) ||
-      dea_studio_read(w->ctx, w->workspace->folder, name, FILE_MAX, &w->reply->body) != DEA_OK) {
+      dea_studio_read(w->ctx, w->studio->folder, name, FILE_MAX, &w->reply) != DEA_OK) {
     respond_error(w, 404, "there is no such file in this folder");
     return;
   }
@@ -244,14 +224,14 @@ static void get_file(struct work *w)
     const char *at = strrchr(name, '.');
     type = at != NULL && strcmp(at, types[i].ending) == 0 ? types[i].type : type;
   }
-  w->reply->status = 200;
-  w->reply->type = type;
+  w->status = 200;
+  w->type = type;
 }
 
-static void get_list(struct work *w)
+static void get_list(struct dea_studio_exchange *w)
 {
   const char *name = file_argument(w, "name");
-  json_t *list = name != NULL ? dea_studio_list_in(w->workspace->folder, name) : NULL;
+  json_t *list = name != NULL ? dea_studio_list_in(w->studio->folder, name) : NULL;
   if (name != NULL && list == NULL) {
     respond_error(w, 404, "there is no such folder");
   } else if (name != NULL) {
@@ -265,13 +245,13 @@ enum { QUESTION_S = 30 };
 
 /* What a command says, as JSON, into `key` of an answer that shows the command; what is no JSON is
  * an error. */
-static json_t *find_command(struct work *w, const struct dea_studio_line *line, const char *key)
+static json_t *find_command(struct dea_studio_exchange *w, const struct dea_studio_line *line,
+                            const char *key)
 {
   struct dea_text out = {.ctx = w->ctx}, err = {.ctx = w->ctx}, shown = {.ctx = w->ctx};
   int code = -1;
-  const dea_status status =
-      dea_studio_run_command(w->ctx, w->workspace->options->program, w->workspace->folder, line,
-                             QUESTION_S, &out, &err, &code);
+  const dea_status status = dea_studio_run_command(w->ctx, w->studio->options.program, line,
+                                                   QUESTION_S, &out, &err, &code);
   json_t *json = json_object(), *said = NULL;
   dea_studio_line_show(line, &shown);
   if (status == DEA_OK) {
@@ -292,13 +272,13 @@ static json_t *find_command(struct work *w, const struct dea_studio_line *line, 
 }
 
 /* A name for a file in the scratch folder; owned by the caller. */
-static char *scratch_name(struct work *w, const char *ending)
+static char *scratch_name(struct dea_studio_exchange *w, const char *ending)
 {
   char name[40];
-  pthread_mutex_lock(&w->workspace->write_lock);
-  snprintf(name, sizeof name, "%u.%s", ++w->workspace->scratch_count, ending);
-  pthread_mutex_unlock(&w->workspace->write_lock);
-  return dea_path_join(w->ctx, w->workspace->scratch, name);
+  pthread_mutex_lock(&w->studio->write_lock);
+  snprintf(name, sizeof name, "%u.%s", ++w->studio->scratch_count, ending);
+  pthread_mutex_unlock(&w->studio->write_lock);
+  return dea_path_join(w->ctx, w->studio->scratch, name);
 }
 
 /* "dea check DESIGN --svg FILE", or of another command. */
@@ -313,8 +293,8 @@ static void build_line(struct dea_studio_line *line, const char *command, const 
 }
 
 /* What a command says of a design, and the file that it writes: {COMMAND, ENDING, command}. */
-static void query_file(struct work *w, const char *command, const char *design, const char *shown,
-                       const char *option, const char *ending)
+static void query_file(struct dea_studio_exchange *w, const char *command, const char *design,
+                       const char *shown, const char *option, const char *ending)
 {
   struct dea_studio_line line;
   struct dea_text by_hand = {.ctx = w->ctx};
@@ -342,9 +322,9 @@ static void query_file(struct work *w, const char *command, const char *design, 
   respond_json(w, 200, json);
 }
 
-static void get_of_design(struct work *w)
+static void get_of_design(struct dea_studio_exchange *w)
 {
-  const struct route *r = w->route;
+  const struct dea_studio_route *r = w->route;
   const char *name = file_argument(w, "name");
   if (name != NULL && can_write(w, name)) { // a link would lead out
     query_file(w, r->command, name, name, r->option, r->ending);
@@ -353,7 +333,7 @@ static void get_of_design(struct work *w)
   }
 }
 
-static void get_schema(struct work *w)
+static void get_schema(struct dea_studio_exchange *w)
 {
   static const char *const kinds[] = {"--explore", "--fit", "--fit-device", "--fit-breakdown",
                                       "--fit-life"};
@@ -370,7 +350,7 @@ static void get_schema(struct work *w)
 }
 
 /* Adds the runs and the table that the address names, or those of a body; false after an answer. */
-static bool add_runs(struct work *w, const json_t *runs, const char *measured,
+static bool add_runs(struct dea_studio_exchange *w, const json_t *runs, const char *measured,
                      struct dea_studio_line *line, const char *option)
 {
   size_t i;
@@ -398,16 +378,15 @@ static bool add_runs(struct work *w, const json_t *runs, const char *measured,
 }
 
 /* The misfit of runs to a table or to the last of them: {compare, command}. */
-static void get_compare(struct work *w)
+static void get_compare(struct dea_studio_exchange *w)
 {
   struct dea_studio_line line = {.count = 0};
   dea_studio_line_add(&line, "compare");
-  if (json_array_size(json_object_get(w->request->arguments, "run")) == 0) {
+  if (json_array_size(json_object_get(w->arguments, "run")) == 0) {
     respond_error(w, 400, "runs are needed");
     return;
   }
-  if (add_runs(w, json_object_get(w->request->arguments, "run"), argument(w, "measured", 0), &line,
-               NULL)) {
+  if (add_runs(w, json_object_get(w->arguments, "run"), argument(w, "measured", 0), &line, NULL)) {
     dea_studio_line_add(&line, "--json");
     respond_json(w, 200, find_command(w, &line, "compare"));
   }
@@ -475,17 +454,14 @@ static dea_status draw_runs(struct dea_context *ctx, const struct dea_report_run
 }
 
 /* Of the sweeps that are there the first of the run's design. */
-static dea_status find_sweep(struct dea_context *ctx, const char *folder, const json_t *sweeps,
+static dea_status find_sweep(struct dea_context *ctx, const json_t *sweeps,
                              struct dea_report_run *run, char **bytes)
 {
   for (size_t i = 0; i < json_array_size(sweeps) && run->emulator == NULL; i++) {
     const json_t *name = json_object_get(json_array_get(sweeps, i), "name");
-    char *path = dea_path_join(ctx, folder, json_string_value(name));
     dea_free(ctx, *bytes);
     *bytes = NULL;
-    const dea_status status =
-        path != NULL ? dea_report_runs_explore(ctx, path, run, 1, bytes) : DEA_E_MEMORY;
-    dea_free(ctx, path);
+    const dea_status status = dea_report_runs_explore(ctx, json_string_value(name), run, 1, bytes);
     if (status == DEA_E_MEMORY) {
       return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     }
@@ -494,48 +470,40 @@ static dea_status find_sweep(struct dea_context *ctx, const char *folder, const 
   return DEA_OK;
 }
 
-/* Adds HTML whose numbers the page's script finds. folder: that has runs [name], at most RUNS_MAX,
- * also ones that go on; measured: a table beside them, NULL: none; sweeps [{name}]: folders of
+/* Adds HTML whose numbers the page's script finds. names: of runs, at most RUNS_MAX, also ones that
+ * go on; measured: a table beside them, NULL: none; sweeps [{name}]: folders of
  * sweeps over numbers of designs. One thread at a time. DEA_E_IO as dea_run_read, or of the table
  * after findings.
  */
-static dea_status add_runs_html(struct dea_context *ctx, const char *folder, const json_t *names,
-                                const char *measured, const json_t *sweeps, enum view view,
-                                struct dea_text *out)
+static dea_status add_runs_html(struct dea_context *ctx, const json_t *names, const char *measured,
+                                const json_t *sweeps, enum view view, struct dea_text *out)
 {
   struct dea_report_run runs[RUNS_MAX] = {{0}};
-  char *paths[RUNS_MAX + 1] = {NULL}, *emulator = NULL;
+  const char *paths[RUNS_MAX];
+  char *emulator = NULL;
   const size_t count = json_array_size(names);
-  dea_status status = DEA_OK;
-  for (size_t i = 0; i <= count && status == DEA_OK; i++) {
-    const char *name = i < count ? json_string_value(json_array_get(names, i)) : measured;
-    paths[i] = name != NULL ? dea_path_join(ctx, folder, name) : NULL;
-    status = paths[i] != NULL || name == NULL ? DEA_OK : DEA_E_MEMORY;
+  for (size_t i = 0; i < count; i++) {
+    paths[i] = json_string_value(json_array_get(names, i));
   }
-  if (status == DEA_OK) {
-    status = dea_report_runs_open(ctx, (const char *const *)paths, count, runs);
-  }
+  dea_status status = dea_report_runs_open(ctx, paths, count, runs);
   if (status == DEA_OK && view == SLIDERS) {
-    status = find_sweep(ctx, folder, sweeps, &runs[0], &emulator);
+    status = find_sweep(ctx, sweeps, &runs[0], &emulator);
   }
   for (size_t i = 0; i < count && status == DEA_OK; i++) { // they are known by their folders here
-    snprintf(runs[i].title, sizeof runs[i].title, "%s", dea_path_name(paths[i]));
+    snprintf(runs[i].title, sizeof runs[i].title, "%s", paths[i]);
   }
-  status = status == DEA_OK ? draw_runs(ctx, runs, count, paths[count], view, out) : status;
+  status = status == DEA_OK ? draw_runs(ctx, runs, count, measured, view, out) : status;
   dea_free(ctx, emulator);
   dea_report_runs_close(ctx, runs, count);
-  for (size_t i = 0; i <= RUNS_MAX; i++) {
-    dea_free(ctx, paths[i]);
-  }
   return DEA_CHAIN(ctx, status);
 }
 
 /* CURVES: figures of one run, with their limits, or of several beside each other; FILM: the film of
  * the first in space, SLIDERS: its explorer, as pages of their own. */
-static void get_runs(struct work *w)
+static void get_runs(struct dea_studio_exchange *w)
 {
   const enum view view = w->route->view;
-  const json_t *runs = json_object_get(w->request->arguments, "run");
+  const json_t *runs = json_object_get(w->arguments, "run");
   const char *measured = argument(w, "measured", 0);
   struct dea_studio_line unused = {.count = 0};
   const size_t asked = json_array_size(runs);
@@ -547,14 +515,14 @@ static void get_runs(struct work *w)
     return;
   }
   struct dea_text out = {.ctx = w->ctx};
-  json_t *lists = view == SLIDERS ? dea_studio_list(w->workspace->folder) : NULL;
-  pthread_mutex_lock(&w->workspace->results_lock);
-  const dea_status status = add_runs_html(w->ctx, w->workspace->path, runs, measured,
-                                          json_object_get(lists, "sweeps"), view, &out);
-  pthread_mutex_unlock(&w->workspace->results_lock);
+  json_t *lists = view == SLIDERS ? dea_studio_list(w->studio->folder) : NULL;
+  pthread_mutex_lock(&w->studio->results_lock);
+  const dea_status status =
+      add_runs_html(w->ctx, runs, measured, json_object_get(lists, "sweeps"), view, &out);
+  pthread_mutex_unlock(&w->studio->results_lock);
   if (status == DEA_OK && !out.failed) {
     respond(w, 200, html_mime, dea_text_get(&out), out.length);
-    w->reply->foreign = view != CURVES;
+    w->foreign = view != CURVES;
   } else {
     respond_failure(w);
   }
@@ -564,12 +532,12 @@ static void get_runs(struct work *w)
 
 // Examples ----------------------------------------------------------------------------------------
 
-static const struct dea_studio_example *example_argument(struct work *w)
+static const struct dea_studio_example *example_argument(struct dea_studio_exchange *w)
 {
   const char *name = argument(w, "name", 0);
-  for (size_t i = 0; name != NULL && i < w->workspace->options->example_count; i++) {
-    if (strcmp(w->workspace->options->examples[i].name, name) == 0) {
-      return &w->workspace->options->examples[i];
+  for (size_t i = 0; name != NULL && i < w->studio->options.example_count; i++) {
+    if (strcmp(w->studio->options.examples[i].name, name) == 0) {
+      return &w->studio->options.examples[i];
     }
   }
   respond_error(w, 404, "there is no such example");
@@ -590,11 +558,11 @@ static void find_line(const char *text, const char *word, char *out, size_t size
   }
 }
 
-static void get_examples(struct work *w)
+static void get_examples(struct dea_studio_exchange *w)
 {
   json_t *list = json_array();
-  for (size_t i = 0; i < w->workspace->options->example_count; i++) {
-    const struct dea_studio_example *example = &w->workspace->options->examples[i];
+  for (size_t i = 0; i < w->studio->options.example_count; i++) {
+    const struct dea_studio_example *example = &w->studio->options.examples[i];
     char title[200], *bytes = NULL;
     size_t length;
     if (dea_file_read(w->ctx, example->path, DEA_STUDIO_BODY_MAX, &bytes, &length) == DEA_OK) {
@@ -606,7 +574,7 @@ static void get_examples(struct work *w)
   respond_json(w, 200, list);
 }
 
-static void get_picture(struct work *w)
+static void get_picture(struct dea_studio_exchange *w)
 {
   const struct dea_studio_example *example = example_argument(w);
   if (example != NULL) {
@@ -615,27 +583,27 @@ static void get_picture(struct work *w)
 }
 
 /* Writes what an example says under a name that no file has. */
-static bool copy_text(struct work *w, const char *text, size_t length, const char *to)
+static bool copy_text(struct dea_studio_exchange *w, const char *text, size_t length,
+                      const char *to)
 {
   struct stat file;
-  char *path = path_of(w, to);
   bool done = false;
-  pthread_mutex_lock(&w->workspace->write_lock);
-  if (fstatat(w->workspace->folder, to, &file, AT_SYMLINK_NOFOLLOW) == 0) {
+  pthread_mutex_lock(&w->studio->write_lock);
+  if (fstatat(w->studio->folder, to, &file, AT_SYMLINK_NOFOLLOW) == 0) {
     respond_error(w, 409, "a file of that name is there");
-  } else if (path == NULL || dea_file_write(w->ctx, path, text, length) != DEA_OK) {
+  } else if (dea_file_write(w->ctx, to, text, length) != DEA_OK) {
     respond_failure(w);
   } else {
     done = true;
   }
-  pthread_mutex_unlock(&w->workspace->write_lock);
-  dea_free(w->ctx, path);
+  pthread_mutex_unlock(&w->studio->write_lock);
   return done;
 }
 
 /* Files beside an example that it names, a drawing for one, come along; those that are there
  * stay. */
-static void copy_beside(struct work *w, const struct dea_studio_example *example, const char *text)
+static void copy_beside(struct dea_studio_exchange *w, const struct dea_studio_example *example,
+                        const char *text)
 {
   static const char ends[] = " \t\r\n,}]'\"";
   for (const char *at = strstr(text, "file: "); at != NULL; at = strstr(at + 1, "file: ")) {
@@ -654,7 +622,7 @@ static void copy_beside(struct work *w, const struct dea_studio_example *example
   }
 }
 
-static void post_copy(struct work *w)
+static void post_copy(struct dea_studio_exchange *w)
 {
   const struct dea_studio_example *example = example_argument(w);
   const char *to = example != NULL ? file_argument(w, "to") : NULL;
@@ -700,31 +668,23 @@ static const char *text_of(const json_t *body, const char *key)
   return json_string_value(json_object_get(body, key));
 }
 
-/* The file and the folder that it writes; NULL after an answer. */
-static const char *job_output(struct work *w, const char *file, const char *output)
+/* A job that reads a file and writes a folder: {action, file, output, ...}; false after an answer.
+ */
+static bool build_file_job(struct dea_studio_exchange *w, const json_t *body, const char *action,
+                           struct dea_studio_line *line)
 {
+  const char *file = text_of(body, "file"), *output = text_of(body, "output");
+  const bool run = strcmp(action, "run") == 0;
   struct stat info;
   if (file == NULL || output == NULL || !dea_studio_name_good(file, false) || !can_write(w, file) ||
       !dea_studio_name_good(output, false) ||
-      (fstatat(w->workspace->folder, output, &info, AT_SYMLINK_NOFOLLOW) == 0 &&
+      (fstatat(w->studio->folder, output, &info, AT_SYMLINK_NOFOLLOW) == 0 &&
        !S_ISDIR(info.st_mode))) {
     respond_error(w, 400, "a file of this folder and a folder for what comes of it are needed");
-    return NULL;
-  }
-  return output;
-}
-
-/* One of the jobs that read a file and write a folder: {action, file, output, ...}. */
-static bool create_file_job(struct work *w, const json_t *body, const char *action,
-                            struct dea_studio_line *line)
-{
-  const char *output = job_output(w, text_of(body, "file"), text_of(body, "output"));
-  if (output == NULL) {
     return false;
   }
-  const bool run = strcmp(action, "run") == 0;
   dea_studio_line_add(line, action);
-  add_file(line, text_of(body, "file"));
+  add_file(line, file);
   dea_studio_line_add(line, "-o");
   add_file(line, output);
   if (strcmp(action, "fab") == 0 || strcmp(action, "fit") == 0 ||
@@ -742,7 +702,8 @@ static bool create_file_job(struct work *w, const json_t *body, const char *acti
 }
 
 /* A report of runs, into the first one's folder: {action, runs, measured}. */
-static bool build_report(struct work *w, const json_t *body, struct dea_studio_line *line)
+static bool build_report(struct dea_studio_exchange *w, const json_t *body,
+                         struct dea_studio_line *line)
 {
   const json_t *runs = json_object_get(body, "runs");
   if (json_array_size(runs) == 0 || json_array_size(runs) > RUNS_MAX) {
@@ -753,30 +714,30 @@ static bool build_report(struct work *w, const json_t *body, struct dea_studio_l
   return add_runs(w, runs, text_of(body, "measured"), line, "--measurement");
 }
 
-static void post_job(struct work *w)
+static void post_job(struct dea_studio_exchange *w)
 {
-  static const char *const actions[] = {"run", "fab", "fit", "sweep", "optimise"};
-  json_t *body = json_loadb(w->request->body, w->request->body_length, 0, NULL);
+  static const char *const actions[] = {"run", "fab", "fit", "sweep", "optimise", "report"};
+  json_t *body = json_loadb(w->body, w->body_length, 0, NULL);
   struct dea_studio_line line = {.count = 0};
   const char *action = text_of(body, "action"), *subject = text_of(body, "file"),
              *output = text_of(body, "output");
-  bool made = false, known = false;
-  if (action != NULL && strcmp(action, "report") == 0) {
-    subject = json_string_value(json_array_get(json_object_get(body, "runs"), 0));
-    output = subject;
-    known = true;
-    made = build_report(w, body, &line);
-  }
+  bool known = false;
   for (size_t i = 0; action != NULL && i < sizeof actions / sizeof actions[0]; i++) {
-    if (strcmp(action, actions[i]) == 0) {
-      known = true;
-      made = create_file_job(w, body, action, &line);
-    }
+    known = known || strcmp(action, actions[i]) == 0;
+  }
+  const bool report = known && strcmp(action, "report") == 0;
+  if (report) {
+    subject = output = json_string_value(json_array_get(json_object_get(body, "runs"), 0));
   }
   if (!known) {
     respond_error(w, 400, "actions are run, fab, fit, sweep, optimise and report");
-  } else if (made) {
-    const int id = dea_studio_jobs_add(w->workspace->jobs, action, subject, output, &line);
+  } else if (report ? build_report(w, body, &line) : build_file_job(w, body, action, &line)) {
+    struct dea_text shown = {.ctx = w->ctx};
+    dea_studio_line_show(&line, &shown);
+    json_t *facts = json_pack("{s:s, s:s, s:s, s:s}", "action", action, "subject", subject,
+                              "output", output, "command", dea_text_get(&shown));
+    dea_text_free(&shown);
+    const int id = dea_studio_jobs_add(w->studio->jobs, facts, &line);
     respond_json(w, 200,
                  id > 0
                      ? json_pack("{s:i}", "id", id)
@@ -785,12 +746,12 @@ static void post_job(struct work *w)
   json_decref(body);
 }
 
-static void post_stop(struct work *w)
+static void post_stop(struct dea_studio_exchange *w)
 {
-  json_t *body = json_loadb(w->request->body, w->request->body_length, 0, NULL);
+  json_t *body = json_loadb(w->body, w->body_length, 0, NULL);
   const int id = (int)json_integer_value(json_object_get(body, "id"));
   json_decref(body);
-  if (dea_studio_jobs_stop(w->workspace->jobs, id)) {
+  if (dea_studio_jobs_stop(w->studio->jobs, id)) {
     respond_json(w, 200, json_object());
   } else {
     respond_error(w, 404, "that does not run");
@@ -799,10 +760,9 @@ static void post_stop(struct work *w)
 
 // -------------------------------------------------------------------------------------------------
 
-void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *workspace,
-                       const struct dea_studio_request *request, struct dea_studio_reply *reply)
+void dea_studio_answer(struct dea_studio_exchange *w)
 {
-  static const struct route routes[] = {
+  static const struct dea_studio_route routes[] = {
       {"GET", "", get_part, html_mime, dea_asset_studio_page,
        .length = &dea_asset_studio_page_length},
       {"GET", "studio.css", get_part, "text/css; charset=utf-8", dea_asset_studio_style,
@@ -826,17 +786,16 @@ void dea_studio_answer(struct dea_context *ctx, struct dea_studio_folder *worksp
       {"POST", "copy", .answer = post_copy},
       {"POST", "job", .answer = post_job},
       {"POST", "stop", .answer = post_stop}};
-  struct work w = {NULL, ctx, workspace, request, reply};
   bool path_known = false;
   for (size_t i = 0; i < sizeof routes / sizeof routes[0]; i++) {
-    if (strcmp(routes[i].path, request->path) == 0) {
+    if (strcmp(routes[i].path, w->path) == 0) {
       path_known = true;
-      if (strcmp(routes[i].method, request->method) == 0) {
-        w.route = &routes[i];
-        w.route->answer(&w);
+      if (strcmp(routes[i].method, w->method) == 0) {
+        w->route = &routes[i];
+        w->route->answer(w);
         return;
       }
     }
   }
-  respond_error(&w, path_known ? 405 : 404, path_known ? "not that way" : "there is no such thing");
+  respond_error(w, path_known ? 405 : 404, path_known ? "not that way" : "there is no such thing");
 }

@@ -13,22 +13,9 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-enum { SECRET_BYTES = 18, SECRET_SIZE = 2 * SECRET_BYTES + 1, THREADS = 40 };
+enum { THREADS = 40 };
 
 static const double body_patience_s = 3; // for all of a request's body
-
-struct dea_studio {
-  struct dea_context *ctx;
-  struct dea_studio_options options;
-  struct dea_studio_folder workspace;
-  struct mg_context *server;
-  char *path;               // of the folder
-  char scratch[512];        // of files on the way
-  char doorway[560];        // "" until it is there
-  char secret[SECRET_SIZE]; // first part of all paths
-  char address[SECRET_SIZE + 64];
-  char hosts[2][32], origins[2][48]; // what a browser may say that it has come to, and from
-};
 
 // What is let in ----------------------------------------------------------------------------------
 
@@ -36,13 +23,13 @@ struct dea_studio {
 static bool is_secret(const struct dea_studio *studio, const char *text)
 {
   unsigned char differs = 0;
-  if (strlen(text) < SECRET_SIZE - 1) {
+  if (strlen(text) < DEA_STUDIO_SECRET_SIZE - 1) {
     return false;
   }
-  for (size_t i = 0; i < SECRET_SIZE - 1; i++) {
+  for (size_t i = 0; i < DEA_STUDIO_SECRET_SIZE - 1; i++) {
     differs |= (unsigned char)(text[i] ^ studio->secret[i]);
   }
-  return differs == 0 && text[SECRET_SIZE - 1] == '/';
+  return differs == 0 && text[DEA_STUDIO_SECRET_SIZE - 1] == '/';
 }
 
 static bool is_one_of(const char *text, const char *first, const char *second)
@@ -150,24 +137,15 @@ static bool read_body(struct dea_context *ctx, struct mg_connection *connection,
   return body != NULL && used == length;
 }
 
-/* A question and where its answer goes. */
-struct task {
-  struct dea_context *ctx;
-  struct dea_studio_folder *workspace;
-  const struct dea_studio_request *request;
-  struct dea_studio_reply *reply;
-};
-
 static void *work(void *user)
 {
-  const struct task *task = user;
-  dea_studio_answer(task->ctx, task->workspace, task->request, task->reply);
+  dea_studio_answer(user);
   return NULL;
 }
 
 /* Answers on a thread of its own: those of civetweb have stacks of 100 kB, which is not enough to
  * read results. */
-static void answer_in_worker(struct task *task)
+static void answer_in_worker(struct dea_studio_exchange *exchange)
 {
   enum { STACK = 8 << 20 };
   pthread_t thread;
@@ -176,7 +154,7 @@ static void answer_in_worker(struct task *task)
     return;
   }
   if (pthread_attr_setstacksize(&how, STACK) == 0 &&
-      pthread_create(&thread, &how, work, task) == 0) {
+      pthread_create(&thread, &how, work, exchange) == 0) {
     pthread_join(thread, NULL);
   }
   pthread_attr_destroy(&how);
@@ -191,25 +169,29 @@ static int answer(struct dea_studio *studio, struct mg_connection *connection,
   }
   char *body = NULL;
   const size_t length = info->content_length > 0 ? (size_t)info->content_length : 0;
-  struct dea_studio_reply reply = {.status = 500, .type = "text/plain", .body = {.ctx = ctx}};
+  struct dea_studio_exchange e = {.ctx = ctx,
+                                  .studio = studio,
+                                  .method = info->request_method,
+                                  .path = info->local_uri + 1 + DEA_STUDIO_SECRET_SIZE,
+                                  .body_length = length,
+                                  .status = 500,
+                                  .type = "text/plain",
+                                  .reply = {.ctx = ctx}};
   if (read_body(ctx, connection, length, &body)) {
-    const struct dea_studio_request request = {.method = info->request_method,
-                                               .path = info->local_uri + 1 + SECRET_SIZE,
-                                               .arguments = read_arguments(info),
-                                               .body = body,
-                                               .body_length = length};
-    answer_in_worker(&(struct task){ctx, &studio->workspace, &request, &reply});
-    json_decref(request.arguments);
-    send_head(connection, reply.status, reply.type, reply.body.length,
-              reply.foreign ? foreign_policy : own_policy);
-    mg_write(connection, reply.body.data, reply.body.length);
+    e.body = body;
+    e.arguments = read_arguments(info);
+    answer_in_worker(&e);
+    json_decref(e.arguments);
+    send_head(connection, e.status, e.type, e.reply.length,
+              e.foreign ? foreign_policy : own_policy);
+    mg_write(connection, e.reply.data, e.reply.length);
   } else {
-    reply.status = send_refusal(connection, 408);
+    e.status = send_refusal(connection, 408);
   }
-  dea_text_free(&reply.body);
+  dea_text_free(&e.reply);
   dea_free(ctx, body);
   dea_context_destroy(ctx);
-  return reply.status;
+  return e.status;
 }
 
 static int on_request(struct mg_connection *connection)
@@ -234,28 +216,12 @@ static int on_message(const struct mg_connection *connection, const char *messag
 
 static dea_status create_secret(struct dea_studio *studio)
 {
-  unsigned char bytes[SECRET_BYTES];
+  unsigned char bytes[DEA_STUDIO_SECRET_BYTES];
   if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes) {
     return dea_fail(studio->ctx, DEA_E_IO, "no random numbers: %s", strerror(errno));
   }
   for (size_t i = 0; i < sizeof bytes; i++) {
     snprintf(studio->secret + 2 * i, 3, "%02x", bytes[i]);
-  }
-  return DEA_OK;
-}
-
-/* The folder for files on the way, which only this user can enter. */
-static dea_status create_scratch(struct dea_studio *studio)
-{
-  const char *runtime = getenv("XDG_RUNTIME_DIR"), *temporary = getenv("TMPDIR");
-  const char *in = runtime != NULL && runtime[0] != '\0'       ? runtime
-                   : temporary != NULL && temporary[0] != '\0' ? temporary
-                                                               : "/tmp";
-  const int length = snprintf(studio->scratch, sizeof studio->scratch, "%s/dea-studio-XXXXXX", in);
-  if (length >= (int)sizeof studio->scratch || mkdtemp(studio->scratch) == NULL) {
-    studio->scratch[0] = '\0';
-    return dea_fail(studio->ctx, DEA_E_IO, "no folder for files on the way in %s: %s", in,
-                    strerror(errno));
   }
   return DEA_OK;
 }
@@ -315,21 +281,15 @@ static dea_status open_listener(struct dea_studio *studio)
 static dea_status begin(struct dea_studio *studio)
 {
   struct dea_context *ctx = studio->ctx;
-  studio->path = realpath(studio->options.folder, NULL);
-  studio->workspace.folder =
-      studio->path != NULL ? open(studio->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
-  if (studio->workspace.folder < 0) {
-    return dea_fail(ctx, DEA_E_IO, "cannot open the folder %s: %s", studio->options.folder,
-                    strerror(errno));
+  studio->path = realpath(".", NULL);
+  studio->folder = open(".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (studio->path == NULL || studio->folder < 0) {
+    return dea_fail(ctx, DEA_E_IO, "cannot open the folder: %s", strerror(errno));
   }
   DEA_TRY(ctx, create_secret(studio));
-  DEA_TRY(ctx, create_scratch(studio));
-  studio->workspace.options = &studio->options;
-  studio->workspace.path = studio->path;
-  studio->workspace.scratch = studio->scratch;
-  studio->workspace.jobs =
-      dea_studio_jobs_create(ctx, studio->options.program, studio->workspace.folder);
-  if (studio->workspace.jobs == NULL) {
+  DEA_TRY(ctx, dea_folder_create_temporary(ctx, "studio", studio->scratch));
+  studio->jobs = dea_studio_jobs_create(ctx, studio->options.program);
+  if (studio->jobs == NULL) {
     return dea_context_status(ctx);
   }
   DEA_TRY(ctx, listen_at(studio));
@@ -342,9 +302,9 @@ dea_status dea_studio_start(struct dea_context *ctx, const struct dea_studio_opt
   struct dea_studio *studio = dea_alloc(ctx, 1, sizeof *studio);
   *out = NULL;
   DEA_TRY_MEMORY(studio != NULL);
-  *studio = (struct dea_studio){.ctx = ctx, .options = *options, .workspace = {.folder = -1}};
-  pthread_mutex_init(&studio->workspace.write_lock, NULL);
-  pthread_mutex_init(&studio->workspace.results_lock, NULL);
+  *studio = (struct dea_studio){.ctx = ctx, .options = *options, .folder = -1};
+  pthread_mutex_init(&studio->write_lock, NULL);
+  pthread_mutex_init(&studio->results_lock, NULL);
   DEA_TRY_ELSE(ctx, begin(studio), dea_studio_stop(studio));
   *out = studio;
   return DEA_OK;
@@ -363,7 +323,7 @@ const char *dea_studio_doorway(const struct dea_studio *studio)
 void dea_studio_serve(struct dea_studio *studio)
 {
   while (!dea_interrupted(studio->ctx)) {
-    dea_studio_jobs_turn(studio->workspace.jobs);
+    dea_studio_jobs_turn(studio->jobs);
   }
 }
 
@@ -377,18 +337,13 @@ void dea_studio_stop(struct dea_studio *studio)
     mg_stop(studio->server);
     mg_exit_library();
   }
-  dea_studio_jobs_destroy(ctx, studio->workspace.jobs);
-  if (studio->doorway[0] != '\0') {
-    unlink(studio->doorway);
+  dea_studio_jobs_destroy(ctx, studio->jobs);
+  dea_folder_remove_temporary(studio->scratch);
+  if (studio->folder >= 0) {
+    close(studio->folder);
   }
-  if (studio->scratch[0] != '\0') {
-    rmdir(studio->scratch);
-  }
-  if (studio->workspace.folder >= 0) {
-    close(studio->workspace.folder);
-  }
-  pthread_mutex_destroy(&studio->workspace.write_lock);
-  pthread_mutex_destroy(&studio->workspace.results_lock);
+  pthread_mutex_destroy(&studio->write_lock);
+  pthread_mutex_destroy(&studio->results_lock);
   free(studio->path);
   dea_free(ctx, studio);
 }

@@ -136,7 +136,7 @@ TEST(test_whole)
 TEST(test_front)
 {
   static const int both[] = {0, 2};
-  struct dea_optimum front[DEA_FRONT_MAX];
+  struct dea_optimum front[DEA_EXPLORE_FRONT_MAX];
   size_t count;
   struct dea_search search = search_of(both, 2);
   run(&search, "front", front, &count);

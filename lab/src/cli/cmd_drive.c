@@ -231,7 +231,8 @@ static void add_reason(json_t *json, struct dea_zero zero)
 }
 
 /* Brings the output to 0 V, whatever the protocol would play. */
-static int zero(struct dea_cli *cli, const struct request *request, struct dea_protocol *protocol)
+static dea_status zero(struct dea_cli *cli, const struct request *request,
+                       struct dea_protocol *protocol)
 {
   char *folder = NULL, known[DEA_ZERO_TEXT_SIZE];
   struct dea_zero output = {DEA_ZERO_NONE, NAN, NULL};
@@ -250,11 +251,9 @@ static int zero(struct dea_cli *cli, const struct request *request, struct dea_p
   } else {
     printf("  %-16s  %s\n", "output", known);
   }
-  fflush(stdout);
-  int code = cli_report(cli, status);
   dea_free(cli->ctx, folder);
   dea_protocol_destroy(cli->ctx, protocol);
-  return code;
+  return status;
 }
 
 /* Where a guard may say something after the program's end: a terminal or a file, of which nobody
@@ -377,13 +376,13 @@ static json_t *whole_json(struct dea_cli *cli, const struct request *request, de
   return json;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_protocol *protocol = NULL;
   struct dea_protocol_plan plan;
   struct dea_drive_report report = {.largest_current_A = NAN};
-  struct dea_text name = {.ctx = cli->ctx};
+  const char *file = request->output;
   bool planned = false, played = false;
   dea_status status = read_and_check(cli, request, &protocol, &plan, &planned);
   if (request->zero && status == DEA_OK) {
@@ -393,8 +392,7 @@ static int run(struct dea_cli *cli, void *user)
     print_plan(cli, protocol, &plan);
     fflush(stdout);
   }
-  const char *file = cli_output_name(request->output, request->protocol, "h5", &name);
-  status = status == DEA_OK && file == NULL ? DEA_E_MEMORY : status;
+  status = status == DEA_OK ? cli_output_name(cli, request->protocol, "h5", &file) : status;
   if (status == DEA_OK && (request->arm || request->simulate)) {
     status = play(cli, request, protocol, file, &report);
     played = dea_path_exists(file) && (status == DEA_OK || report.played_s > 0);
@@ -413,11 +411,8 @@ static int run(struct dea_cli *cli, void *user)
   } else if (status == DEA_OK) {
     printf("\nNothing was played. Next:  dea drive %s --sim\n", request->protocol);
   }
-  fflush(stdout);
-  int code = cli_report(cli, status);
-  dea_text_free(&name);
   dea_protocol_destroy(cli->ctx, protocol);
-  return code;
+  return status;
 }
 
 static const struct cli_option options[] = {

@@ -254,13 +254,13 @@ static dea_status read_tables(struct dea_cli *cli, const struct request *request
   return status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_mapping *mapping = NULL;
   struct dea_table *table = NULL;
   if (request->list && (request->output != NULL || request->design != NULL)) {
-    return cli_usage_error(cli, &cmd_import, "--list writes nothing: leave -o and --design out");
+    return cli_usage_error(cli, "--list writes nothing: leave -o and --design out");
   }
   dea_status status =
       request->map != NULL ? dea_mapping_read(cli->ctx, request->map, &mapping) : DEA_OK;
@@ -269,11 +269,9 @@ static int run(struct dea_cli *cli, void *user)
     status =
         request->list ? list(cli, request, table, mapping) : record(cli, request, table, mapping);
   }
-  fflush(stdout);
-  int code = cli_report(cli, status);
   dea_table_destroy(cli->ctx, table);
   dea_mapping_destroy(cli->ctx, mapping);
-  return code;
+  return status;
 }
 
 static const struct cli_option options[] = {

@@ -244,18 +244,17 @@ static void print_json(const struct dea_recording *recording)
 }
 
 /* One at a time: each has its own --after. */
-static int parse_with(struct dea_cli *cli, const struct dea_command *command,
-                      const struct cli_option *option, const char *text, void *target)
+static dea_status parse_with(struct dea_cli *cli, const struct cli_option *option, const char *text,
+                             void *target)
 {
   const char **with = target;
   (void)option;
   if (*with != NULL) {
-    return cli_usage_error(cli, command,
-                           "--with once: write the two with -o, and join the third "
-                           "to that");
+    return cli_usage_error(cli, "--with once: write the two with -o, and join the third "
+                                "to that");
   }
   *with = text;
-  return 0;
+  return DEA_OK;
 }
 
 static dea_status join(struct dea_context *ctx, const struct request *request,
@@ -273,16 +272,15 @@ static dea_status join(struct dea_context *ctx, const struct request *request,
   return status;
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_recording *recording = NULL;
   if ((request->with != NULL) != !isnan(request->after_s)) {
-    return cli_usage_error(cli, &cmd_recording,
-                           request->with != NULL
-                               ? "--with needs --after: when the other's time 0 is, such as 0s "
-                                 "where both count from one trigger"
-                               : "--after is said of another recording: --with FILE");
+    return cli_usage_error(
+        cli, request->with != NULL ? "--with needs --after: when the other's time 0 is, such as 0s "
+                                     "where both count from one trigger"
+                                   : "--after is said of another recording: --with FILE");
   }
   dea_status status = dea_recording_read(cli->ctx, request->file, &recording);
   status = status == DEA_OK && request->with != NULL ? join(cli->ctx, request, recording) : status;
@@ -296,11 +294,9 @@ static int run(struct dea_cli *cli, void *user)
     print_json(recording);
   } else if (status == DEA_OK) {
     print_text(recording);
-    fflush(stdout);
   }
-  int code = cli_report(cli, status);
   dea_recording_destroy(cli->ctx, recording);
-  return code;
+  return status;
 }
 
 static const struct cli_option options[] = {

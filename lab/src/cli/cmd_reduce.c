@@ -14,14 +14,14 @@ struct request {
 };
 
 /* "0.2" or "20%". */
-static int parse_settle(struct dea_cli *cli, const struct dea_command *command,
-                        const struct cli_option *option, const char *text, void *target)
+static dea_status parse_settle(struct dea_cli *cli, const struct cli_option *option,
+                               const char *text, void *target)
 {
   double *settle = target;
   bool good = cli_read_share(text, settle) && *settle > 0.0 && *settle <= 1.0;
-  return good ? 0
-              : cli_usage_error(cli, command, "--%s '%s': must be a share such as 0.2 or 20%%",
-                                option->name, text);
+  return good ? DEA_OK
+              : cli_usage_error(cli, "--%s '%s': must be a share such as 0.2 or 20%%", option->name,
+                                text);
 }
 
 /* The design of --design, or the one that the recording brings along; NULL without. */
@@ -232,26 +232,21 @@ static dea_status reduce(struct dea_cli *cli, const struct request *request,
                              request->output);
 }
 
-static int run(struct dea_cli *cli, void *user)
+static dea_status run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_recording *recording = NULL;
   struct dea_reduction *reduction = NULL;
-  struct dea_text folder = {.ctx = cli->ctx};
-  request->output = cli_output_name(request->output, request->file, "reduced", &folder);
-  dea_status status =
-      request->output == NULL ? DEA_E_MEMORY : reduce(cli, request, &recording, &reduction);
+  DEA_TRY(cli->ctx, cli_output_name(cli, request->file, "reduced", &request->output));
+  const dea_status status = reduce(cli, request, &recording, &reduction);
   if (reduction != NULL && request->json) {
     cli_print_json(dea_reduction_json(cli->ctx, recording, reduction, cli->command_line));
   } else if (reduction != NULL) {
     print_text(recording, reduction, request->output);
-    fflush(stdout);
   }
-  int code = cli_report(cli, status);
   dea_reduction_destroy(cli->ctx, reduction);
   dea_recording_destroy(cli->ctx, recording);
-  dea_text_free(&folder);
-  return code;
+  return status;
 }
 
 static const struct request defaults = {.options = {NAN, NAN, NAN, 0.0, NAN},

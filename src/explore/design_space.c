@@ -1,4 +1,4 @@
-#include "explore/case_key.h"
+#include "explore/design_space.h"
 
 #include "base/file.h"
 #include "base/text.h"
@@ -17,54 +17,53 @@
 
 /* All that the device depends on, and with which model at which voltages it is computed from where.
  */
-static void resolve(const struct dea_case_key *case_key, const struct dea_design *design,
+static void resolve(const struct dea_design_space *space, const struct dea_design *design,
                     const struct dea_device *device, struct dea_text *out)
 {
   dea_device_identity(design, device, NULL, out);
-  dea_text_add(out, "model=%s\nbegin=%d\n", case_key->model.type->name,
-               case_key->file->begin.value);
-  for (size_t k = 0; k < case_key->voltage_count; k++) {
-    dea_text_add(out, "%.12g V\n", case_key->voltages_V[k]);
+  dea_text_add(out, "model=%s\nbegin=%d\n", space->model.type->name, space->file->begin.value);
+  for (size_t k = 0; k < space->voltage_count; k++) {
+    dea_text_add(out, "%.12g V\n", space->voltages_V[k]);
   }
 }
 
 static dea_status add_identity(void *user, const struct dea_design *design,
                                const struct dea_device *device)
 {
-  struct dea_case_key *case_key = user;
-  struct dea_text text = {.ctx = case_key->model.ctx};
+  struct dea_design_space *space = user;
+  struct dea_text text = {.ctx = space->model.ctx};
   char hash[65];
-  for (size_t k = 0; k < case_key->voltage_count; k++) { // those of another device
-    for (size_t i = 0; i < case_key->quantity_count; i++) {
-      case_key->seen[k][i] = NAN;
+  for (size_t k = 0; k < space->voltage_count; k++) { // those of another device
+    for (size_t i = 0; i < space->quantity_count; i++) {
+      space->seen[k][i] = NAN;
     }
   }
-  resolve(case_key, design, device, &text);
+  resolve(space, design, device, &text);
   dea_sha256_hex(dea_text_get(&text), text.length, hash);
-  snprintf(case_key->id, sizeof case_key->id, "%.16s", hash);
+  snprintf(space->id, sizeof space->id, "%.16s", hash);
   const bool failed = text.failed;
   dea_text_free(&text);
   return failed ? DEA_E_MEMORY : DEA_OK;
 }
 
 /* Hash of the design as it is, of the variables and of what is kept of a case. */
-static dea_status compute_hash(struct dea_case_key *case_key)
+static dea_status compute_hash(struct dea_design_space *space)
 {
-  struct dea_text text = {.ctx = case_key->ctx};
-  resolve(case_key, case_key->design, case_key->device, &text);
-  for (size_t j = 0; j < case_key->variable_count; j++) {
-    dea_text_add(&text, "variable %s%s", case_key->params[j].param.name, case_key->params[j].state);
-    for (size_t k = 0; k < case_key->params[j].tie_count; k++) {
-      dea_text_add(&text, " %s", case_key->params[j].ties[k].param.name);
+  struct dea_text text = {.ctx = space->ctx};
+  resolve(space, space->design, space->device, &text);
+  for (size_t j = 0; j < space->variable_count; j++) {
+    dea_text_add(&text, "variable %s%s", space->params[j].param.name, space->params[j].state);
+    for (size_t k = 0; k < space->params[j].tie_count; k++) {
+      dea_text_add(&text, " %s", space->params[j].ties[k].param.name);
     }
     dea_text_add(&text, "\n");
   }
-  for (size_t i = 0; i < case_key->quantity_count; i++) {
-    dea_text_add(&text, "quantity %s\n", case_key->quantities[i].key);
+  for (size_t i = 0; i < space->quantity_count; i++) {
+    dea_text_add(&text, "quantity %s\n", space->quantities[i].key);
   }
-  dea_sha256_hex(dea_text_get(&text), text.length, case_key->hash);
+  dea_sha256_hex(dea_text_get(&text), text.length, space->hash);
   dea_text_add(&text, "gradients\n");
-  dea_sha256_hex(dea_text_get(&text), text.length, case_key->hash_slopes);
+  dea_sha256_hex(dea_text_get(&text), text.length, space->hash_slopes);
   const bool failed = text.failed;
   dea_text_free(&text);
   return failed ? DEA_E_MEMORY : DEA_OK;
@@ -73,15 +72,15 @@ static dea_status compute_hash(struct dea_case_key *case_key)
 // Evaluation --------------------------------------------------------------------------------------
 
 /* What is wrong with a design that cannot be built. */
-static void describe_design(struct dea_case_key *case_key, struct dea_context *ctx,
+static void describe_design(struct dea_design_space *space, struct dea_context *ctx,
                             struct dea_case *io)
 {
   struct dea_design *design = NULL;
   struct dea_device *device = NULL;
   size_t count;
   dea_finding_clear(ctx);
-  dea_device_params_build(ctx, &case_key->model.file, case_key->params, case_key->variable_count,
-                          io->p, &design, &device);
+  dea_device_params_build(ctx, &space->model.file, space->params, space->variable_count, io->p, &design,
+                          &device);
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = count; i-- > 0;) { // the first error
     if (findings[i].severity == DEA_ERROR) {
@@ -96,14 +95,14 @@ static void describe_design(struct dea_case_key *case_key, struct dea_context *c
 
 static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case *io)
 {
-  struct dea_case_key *case_key = user;
-  const size_t count = case_key->quantity_count;
-  case_key->id[0] = case_key->model.why[0] = case_key->why[0] = '\0';
-  case_key->model.ctx = ctx;
-  dea_status status = dea_device_model_sweep(&case_key->model, io->has_near ? io->near : NULL,
-                                             io->p, case_key->points);
-  snprintf(io->id, sizeof io->id, "%s", case_key->id);
-  snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, case_key->model.why);
+  struct dea_design_space *space = user;
+  const size_t count = space->quantity_count;
+  space->id[0] = space->model.why[0] = space->why[0] = '\0';
+  space->model.ctx = ctx;
+  dea_status status =
+      dea_device_model_sweep(&space->model, io->has_near ? io->near : NULL, io->p, space->points);
+  snprintf(io->id, sizeof io->id, "%s", space->id);
+  snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, space->model.why);
   if (status == DEA_E_UNSUPPORTED || status == DEA_E_ARGUMENT) { // of this design: a mesh
     snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, dea_context_message(ctx));
     dea_context_clear(ctx);
@@ -111,29 +110,25 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
   }
   if (status == DEA_E_DOMAIN) {
     io->id[0] = '\0'; // not that of the design to begin from
-    describe_design(case_key, ctx, io);
+    describe_design(space, ctx, io);
     return DEA_OK;
   }
   DEA_TRY(ctx, status);
-  for (size_t k = 0; k < case_key->voltage_count; k++) {
-    for (size_t g = 0; g < case_key->model.group_count; g++) {
-      io->marks[k] |= dea_load_point_flags(&case_key->points[case_key->model.groups[g].first + k]);
+  for (size_t k = 0; k < space->voltage_count; k++) {
+    for (size_t g = 0; g < space->model.group_count; g++) {
+      io->marks[k] |= dea_load_point_flags(&space->points[space->model.groups[g].first + k]);
     }
     for (size_t i = 0; i < count; i++) {
-      const struct dea_load_point *point =
-          &case_key
-               ->points[case_key->model.groups[dea_case_key_is_held(case_key, i) ? 1 : 0].first +
-                        k];
+      const struct dea_explored *of = &space->quantities[i];
+      const size_t group = dea_design_space_is_held(space, i) ? 1 : 0;
       double *q = &io->q[k * count + i];
-      *q = !case_key->quantities[i].is_critical && !case_key->quantities[i].is_seen &&
-                   !case_key->quantities[i].is_frequency
-               ? dea_point_get(point, case_key->quantities[i].column)
-               : case_key->seen[k][i];
-      if (isnan(*q) && io->why[0] == '\0' && case_key->quantities[i].is_critical) {
-        snprintf(io->why, sizeof io->why, "%s: %.120s", case_key->quantities[i].key, case_key->why);
+      *q = of->source == DEA_EXPLORED_POINT
+               ? dea_point_get(&space->points[space->model.groups[group].first + k], of->column)
+               : space->seen[k][i];
+      if (isnan(*q) && io->why[0] == '\0' && of->source == DEA_EXPLORED_CRITICAL) {
+        snprintf(io->why, sizeof io->why, "%s: %.120s", of->key, space->why);
       } else if (isnan(*q) && io->why[0] == '\0') {
-        snprintf(io->why, sizeof io->why, "the model does not support %s of this design",
-                 case_key->quantities[i].key);
+        snprintf(io->why, sizeof io->why, "the model does not support %s of this design", of->key);
       }
     }
   }
@@ -142,45 +137,45 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
 
 /* Critical voltages of a device, looked for up to four times the highest that is asked for. They do
  * not depend on the voltage: all stops have the same. */
-static dea_status find_critical(struct dea_case_key *case_key,
+static dea_status find_critical(struct dea_design_space *space,
                                 const struct dea_model_settings *settings,
                                 const struct dea_design *design, const struct dea_device *device)
 {
-  struct dea_context *ctx = case_key->model.ctx;
-  const double last_V = case_key->voltages_V[case_key->voltage_count - 1],
+  struct dea_context *ctx = space->model.ctx;
+  const double last_V = space->voltages_V[space->voltage_count - 1],
                highest_V = fmax(last_V, dea_design_highest_V(design));
-  for (size_t i = 0; i < case_key->quantity_count; i++) {
-    const struct dea_explored *quantity = &case_key->quantities[i];
-    const struct dea_critical_request ask = {.type = case_key->model.type,
+  for (size_t i = 0; i < space->quantity_count; i++) {
+    const struct dea_explored *quantity = &space->quantities[i];
+    const struct dea_critical_request ask = {.type = space->model.type,
                                              .device = device,
                                              .settings = settings,
                                              .kind = quantity->event,
                                              .first_V = highest_V / 4,
                                              .highest_V = 4 * highest_V};
-    if (!quantity->is_critical) {
+    if (quantity->source != DEA_EXPLORED_CRITICAL) {
       continue;
     }
-    DEA_TRY(ctx, dea_critical_find(ctx, &ask, &case_key->critical[i]));
-    if (isnan(case_key->critical[i].voltage_V)) {
-      snprintf(case_key->why, sizeof case_key->why, "%s", case_key->critical[i].why);
+    DEA_TRY(ctx, dea_critical_find(ctx, &ask, &space->critical[i]));
+    if (isnan(space->critical[i].voltage_V)) {
+      snprintf(space->why, sizeof space->why, "%s", space->critical[i].why);
     }
-    for (size_t k = 0; k < case_key->voltage_count; k++) {
-      case_key->seen[k][i] = case_key->critical[i].voltage_V;
+    for (size_t k = 0; k < space->voltage_count; k++) {
+      space->seen[k][i] = space->critical[i].voltage_V;
     }
   }
   return DEA_OK;
 }
 
 /* Where the model knows none, the quantity stays unknown. */
-static dea_status find_frequency(struct dea_case_key *case_key, struct dea_model *model,
+static dea_status find_frequency(struct dea_design_space *space, struct dea_model *model,
                                  size_t stop, double *out)
 {
-  struct dea_context *ctx = case_key->model.ctx;
-  const struct dea_load_point at = {.voltage_V = case_key->voltages_V[stop]};
+  struct dea_context *ctx = space->model.ctx;
+  const struct dea_load_point at = {.voltage_V = space->voltages_V[stop]};
   struct dea_load_point mode;
   struct dea_field_mesh *shapes;
-  if (case_key->model.type->modes != NULL) {
-    DEA_TRY(ctx, case_key->model.type->modes(ctx, model, &at, 1, &mode, &shapes));
+  if (space->model.type->modes != NULL) {
+    DEA_TRY(ctx, space->model.type->modes(ctx, model, &at, 1, &mode, &shapes));
     dea_field_mesh_destroy(ctx, shapes);
     *out = mode.frequency_Hz;
   }
@@ -191,85 +186,85 @@ static dea_status find_frequency(struct dea_case_key *case_key, struct dea_model
 static dea_status stand(void *user, struct dea_model *model, const struct dea_design *design,
                         const struct dea_device *device, size_t stop)
 {
-  struct dea_case_key *case_key = user;
-  struct dea_context *ctx = case_key->model.ctx;
+  struct dea_design_space *space = user;
+  struct dea_context *ctx = space->model.ctx;
   struct dea_monitor_set set;
   struct dea_load_point seen = dea_load_point_empty();
-  DEA_TRY(ctx, dea_monitor_set_init(ctx, case_key->model.type, device, &set));
-  dea_status status = dea_monitor_set_read(ctx, &set, case_key->model.type, model, false, &seen);
-  for (size_t i = 0; i < case_key->quantity_count && stop < case_key->voltage_count; i++) {
-    const struct dea_explored *quantity = &case_key->quantities[i];
-    if (quantity->is_seen) {
-      case_key->seen[stop][i] = dea_point_get(&seen, quantity->column);
-    } else if (quantity->is_frequency && status == DEA_OK) {
-      status = find_frequency(case_key, model, stop, &case_key->seen[stop][i]);
+  DEA_TRY(ctx, dea_monitor_set_init(ctx, space->model.type, device, &set));
+  dea_status status = dea_monitor_set_read(ctx, &set, space->model.type, model, false, &seen);
+  for (size_t i = 0; i < space->quantity_count && stop < space->voltage_count; i++) {
+    const struct dea_explored *quantity = &space->quantities[i];
+    if (quantity->source == DEA_EXPLORED_MONITOR) {
+      space->seen[stop][i] = dea_point_get(&seen, quantity->column);
+    } else if (quantity->source == DEA_EXPLORED_FREQUENCY && status == DEA_OK) {
+      status = find_frequency(space, model, stop, &space->seen[stop][i]);
     }
   }
   dea_monitor_set_free(&set);
   DEA_TRY(ctx, status);
   const struct dea_model_settings settings = dea_model_settings_of(design);
-  status = stop + 1 == case_key->voltage_count ? find_critical(case_key, &settings, design, device)
-                                               : DEA_OK;
-  if (status == DEA_OK && case_key->stood != NULL) {
-    status = case_key->stood(case_key, model, device, stop);
+  status =
+      stop + 1 == space->voltage_count ? find_critical(space, &settings, design, device) : DEA_OK;
+  if (status == DEA_OK && space->now != NULL) {
+    status = dea_design_space_add_slopes(space, model, device, stop);
   }
-  for (size_t i = 0; i < case_key->quantity_count; i++) {
-    dea_critical_end(ctx, &case_key->critical[i]);
+  for (size_t i = 0; i < space->quantity_count; i++) {
+    dea_critical_end(ctx, &space->critical[i]);
   }
   return status;
 }
 
 /* Groups of voltages: the film that moves freely, and where a force is asked for with a tip. */
-static dea_status prepare_model(struct dea_case_key *case_key)
+static dea_status prepare_model(struct dea_design_space *space)
 {
-  struct dea_device_model *model = &case_key->model;
-  const int force = dea_case_key_quantity(case_key, "force_N");
+  struct dea_device_model *model = &space->model;
+  const int force = dea_design_space_quantity(space, "force_N");
   const bool held = force >= 0 && model->type->indent != NULL;
-  const size_t n = case_key->voltage_count, count = held ? 2 * n : n;
-  model->ctx = case_key->ctx;
-  model->file = (struct dea_design_bytes){case_key->design, case_key->bytes, case_key->length};
-  model->params = case_key->params;
-  model->param_count = case_key->variable_count;
+  const size_t n = space->voltage_count, count = held ? 2 * n : n;
+  model->ctx = space->ctx;
+  model->file = (struct dea_design_bytes){space->design, space->bytes, space->length};
+  model->params = space->params;
+  model->param_count = space->variable_count;
   model->built = add_identity;
   model->stood = stand;
-  model->user = case_key;
-  case_key->memory.ctx = case_key->ctx;
-  model->voltage_V = dea_arena_alloc(&case_key->memory, count, sizeof *model->voltage_V);
-  case_key->points = dea_arena_alloc(&case_key->memory, count, sizeof *case_key->points);
-  DEA_TRY(case_key->ctx, dea_arena_status(&case_key->memory));
+  model->user = space;
+  space->memory.ctx = space->ctx;
+  model->voltage_V = dea_arena_alloc(&space->memory, count, sizeof *model->voltage_V);
+  space->points = dea_arena_alloc(&space->memory, count, sizeof *space->points);
+  DEA_TRY(space->ctx, dea_arena_status(&space->memory));
   for (size_t k = 0; k < count; k++) {
-    model->voltage_V[k] = case_key->voltages_V[k % n];
+    model->voltage_V[k] = space->voltages_V[k % n];
   }
   model->stop_count = count;
   model->groups[0] = (struct dea_device_group){.first = 0, .count = n};
   model->groups[1] = (struct dea_device_group){.held = true, .first = n, .count = n};
   model->group_count = held ? 2 : 1;
-  case_key->evaluator = (struct dea_evaluator){.user = case_key,
-                                               .param_count = case_key->variable_count,
-                                               .value_count = n * case_key->quantity_count,
-                                               .mark_count = n,
-                                               .evaluate = evaluate};
+  space->evaluator = (struct dea_evaluator){.user = space,
+                                            .param_count = space->variable_count,
+                                            .value_count = n * space->quantity_count,
+                                            .mark_count = n,
+                                            .evaluate = evaluate};
   return DEA_OK;
 }
 
 // What is asked -----------------------------------------------------------------------------------
 
-static dea_status read_design(struct dea_case_key *case_key)
+static dea_status read_design(struct dea_design_space *space)
 {
-  const struct dea_explore_file *file = case_key->file;
-  struct dea_context *ctx = case_key->ctx;
-  case_key->path = dea_path_beside(ctx, file->head.file, file->design.text);
-  DEA_TRY_MEMORY(case_key->path != NULL);
+  const struct dea_explore_file *file = space->file;
+  struct dea_context *ctx = space->ctx;
+  space->path = dea_path_beside(ctx, file->head.file, file->design.text);
+  DEA_TRY_MEMORY(space->path != NULL);
   dea_status status =
-      dea_file_read(ctx, case_key->path, DEA_YAML_SIZE_MAX, &case_key->bytes, &case_key->length);
+      dea_file_read(ctx, space->path, DEA_YAML_SIZE_MAX, &space->bytes, &space->length);
   if (status == DEA_E_IO) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, file->design.location, "design: %s",
                                  dea_context_message(ctx)));
   }
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, dea_design_read_memory(ctx, case_key->path, case_key->bytes, case_key->length, NULL,
-                                      0, &case_key->design));
-  return dea_device_build(ctx, case_key->design, &case_key->device);
+  DEA_TRY(ctx, dea_design_read_memory(ctx, space->path, space->bytes, space->length, NULL, 0,
+                                      &space->design));
+  return dea_device_build(ctx, space->design, &space->device);
 }
 
 dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *label,
@@ -345,7 +340,7 @@ static bool is_critical(struct dea_explored *out)
   for (int i = 0; i < DEA_CRITICAL_KINDS; i++) {
     const struct dea_critical_kind *critical = &dea_critical_kinds[i];
     if (strcmp(out->key, critical->key) == 0) {
-      out->is_critical = true;
+      out->source = DEA_EXPLORED_CRITICAL;
       out->event = critical->kind;
       out->shown =
           (struct dea_column){out->key, "V", "kV", 1e-3, critical->title, critical->meaning};
@@ -361,6 +356,7 @@ static bool is_critical(struct dea_explored *out)
 static dea_status find_quantity(struct dea_context *ctx, const struct dea_device *device,
                                 const struct dea_label *label, struct dea_explored *out, bool *good)
 {
+  bool observed = false;
   *good = false;
   *out = (struct dea_explored){.column = -1};
   if (strlen(label->text) >= sizeof out->key) {
@@ -372,59 +368,61 @@ static dea_status find_quantity(struct dea_context *ctx, const struct dea_device
     return DEA_OK;
   }
   if (dea_device_is_observed(device)) { // adds its columns to those that are looked through
-    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, -1, &out->of, &out->is_seen));
+    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, -1, &out->of, &observed));
   }
   out->column = dea_column_find(ctx, label->text);
   if (out->column >= 0 && dea_device_is_observed(device)) {
-    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, out->column, &out->of, &out->is_seen));
-    out->is_seen = out->is_seen && out->of.source != DEA_OF_MONITOR_ERROR;
+    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, out->column, &out->of, &observed));
+    observed = observed && out->of.source != DEA_OF_MONITOR_ERROR;
   }
-  if (out->column < 0 || (out->column >= DEA_LOAD_POINT_COLUMNS && !out->is_seen)) {
+  if (out->column < 0 || (out->column >= DEA_LOAD_POINT_COLUMNS && !observed)) {
     return refuse(ctx, device, label);
   }
   out->shown = *dea_column_at(ctx, out->column);
   out->shown.key = out->key; // as the file has it
-  out->is_frequency = out->column == dea_point_column_find("frequency_Hz");
+  out->source = observed                                               ? DEA_EXPLORED_MONITOR
+                : out->column == dea_point_column_find("frequency_Hz") ? DEA_EXPLORED_FREQUENCY
+                                                                       : DEA_EXPLORED_POINT;
   *good = true;
   return DEA_OK;
 }
 
-static dea_status read_quantities(struct dea_case_key *case_key)
+static dea_status read_quantities(struct dea_design_space *space)
 {
-  const struct dea_explore_file *file = case_key->file;
+  const struct dea_explore_file *file = space->file;
   for (size_t i = 0; i < file->quantity_count; i++) {
-    struct dea_explored *out = &case_key->quantities[case_key->quantity_count];
-    const bool twice = dea_case_key_quantity(case_key, file->quantities[i].text) >= 0;
+    struct dea_explored *out = &space->quantities[space->quantity_count];
+    const bool twice = dea_design_space_quantity(space, file->quantities[i].text) >= 0;
     bool good;
-    DEA_TRY(case_key->ctx,
-            find_quantity(case_key->ctx, case_key->device, &file->quantities[i], out, &good));
+    DEA_TRY(space->ctx, find_quantity(space->ctx, space->device, &file->quantities[i], out, &good));
     if (twice) {
-      DEA_TRY(case_key->ctx, dea_finding_add(case_key->ctx, DEA_ERROR, file->quantities[i].location,
-                                             "%s is there twice", out->key));
-    } else if (good && out->is_seen && case_key->model.type != NULL &&
-               case_key->model.type->observe == NULL) {
-      DEA_TRY(case_key->ctx,
-              dea_finding_add(case_key->ctx, DEA_ERROR, file->quantities[i].location,
-                              "model %s does not support monitors", case_key->model.type->name));
+      DEA_TRY(space->ctx, dea_finding_add(space->ctx, DEA_ERROR, file->quantities[i].location,
+                                          "%s is there twice", out->key));
+    } else if (good && out->source == DEA_EXPLORED_MONITOR && space->model.type != NULL &&
+               space->model.type->observe == NULL) {
+      DEA_TRY(space->ctx,
+              dea_finding_add(space->ctx, DEA_ERROR, file->quantities[i].location,
+                              "model %s does not support monitors", space->model.type->name));
     } else if (good) {
-      case_key->quantity_count++;
+      space->quantity_count++;
     }
   }
   return DEA_OK;
 }
 
-static void read_voltages(struct dea_case_key *case_key)
+static void read_voltages(struct dea_design_space *space)
 {
-  const struct dea_explore_file *file = case_key->file;
-  case_key->voltage_count = file->voltage_count > 0 ? file->voltage_count : 1;
-  case_key->voltages_V[0] = dea_design_highest_V(case_key->design);
+  const struct dea_explore_file *file = space->file;
+  space->voltage_count = file->voltage_count > 0 ? file->voltage_count : 1;
+  space->voltages_V[0] = dea_design_highest_V(space->design);
   for (size_t k = 0; k < file->voltage_count; k++) {
-    case_key->voltages_V[k] = file->voltages_V[k].si;
+    space->voltages_V[k] = file->voltages_V[k].si;
   }
 }
 
 /* What goes together of a variable. */
-static dea_status check_variable(struct dea_case_key *case_key, const struct dea_variable *variable)
+static dea_status check_variable(struct dea_design_space *space,
+                                 const struct dea_variable *variable)
 {
   const struct dea_explore_variable *text = variable->text;
   const struct dea_label *name = &text->text.name;
@@ -443,15 +441,15 @@ static dea_status check_variable(struct dea_case_key *case_key, const struct dea
   } else if (variable->value_count == 0 && !spread && !range) {
     wrong = "give low and high, or values";
   }
-  return wrong == NULL ? DEA_OK
-                       : dea_finding_add(case_key->ctx, DEA_ERROR, name->location, "%s: %s",
-                                         name->text, wrong);
+  return wrong == NULL
+             ? DEA_OK
+             : dea_finding_add(space->ctx, DEA_ERROR, name->location, "%s: %s", name->text, wrong);
 }
 
 /* What a search misses a variable by, and the one value of one that only scatters. */
-static dea_status read_scatter(struct dea_case_key *case_key, struct dea_variable *variable)
+static dea_status read_scatter(struct dea_design_space *space, struct dea_variable *variable)
 {
-  struct dea_context *ctx = case_key->ctx;
+  struct dea_context *ctx = space->ctx;
   const struct dea_explore_variable *text = variable->text;
   const struct dea_label *name = &text->text.name;
   if (text->scatter.text[0] == '\0') {
@@ -480,11 +478,11 @@ static dea_status read_scatter(struct dea_case_key *case_key, struct dea_variabl
 
 /* Other numbers of the design that take the value of a variable: of the same unit, and of the same
  * film, stretched or not. */
-static dea_status read_ties(struct dea_case_key *case_key, struct dea_variable *variable)
+static dea_status read_ties(struct dea_design_space *space, struct dea_variable *variable)
 {
-  struct dea_context *ctx = case_key->ctx;
+  struct dea_context *ctx = space->ctx;
   const struct dea_explore_variable *text = variable->text;
-  const struct dea_device_param_source source = {case_key->design, case_key->device, .whole = true};
+  const struct dea_device_param_source source = {space->design, space->device, .whole = true};
   struct dea_device_param *param = &variable->param;
   for (size_t i = 0; i < text->also_count; i++) {
     const struct dea_label *name = &text->also[i];
@@ -512,15 +510,15 @@ static dea_status read_ties(struct dea_case_key *case_key, struct dea_variable *
   return DEA_OK;
 }
 
-static dea_status read_variable(struct dea_case_key *case_key,
+static dea_status read_variable(struct dea_design_space *space,
                                 const struct dea_explore_variable *text,
                                 struct dea_variable *variable)
 {
-  struct dea_context *ctx = case_key->ctx;
+  struct dea_context *ctx = space->ctx;
   struct dea_fit_parameter_text param = text->text;
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   *variable = (struct dea_variable){.text = text, .low = NAN, .high = NAN};
-  if (param.start.text[0] == '\0' && case_key->file->objective_count == 0) { // a sweep has none
+  if (param.start.text[0] == '\0' && space->file->objective_count == 0) { // a sweep has none
     param.start = text->value_count > 0 ? text->values[0] : text->text.low;
   }
   if (param.prior_std.text[0] == '\0' || param.prior.text[0] == '\0') {
@@ -529,12 +527,12 @@ static dea_status read_variable(struct dea_case_key *case_key,
       param.prior.text[0] = param.prior_std.text[0] = '\0';
     }
   }
-  const struct dea_device_param_source source = {case_key->design, case_key->device, .whole = true};
+  const struct dea_device_param_source source = {space->design, space->device, .whole = true};
   DEA_TRY(ctx, dea_device_param_build(ctx, &param, &source, &variable->param));
   if (dea_finding_count(ctx, DEA_ERROR) > errors) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, read_ties(case_key, variable));
+  DEA_TRY(ctx, read_ties(space, variable));
   variable->low = text->text.low.text[0] != '\0' ? variable->param.param.low : NAN;
   variable->high = text->text.high.text[0] != '\0' ? variable->param.param.high : NAN;
   for (size_t i = 0; i < text->value_count; i++) {
@@ -542,14 +540,14 @@ static dea_status read_variable(struct dea_case_key *case_key,
             dea_device_param_number(ctx, &variable->param, &text->values[i], &variable->values[i]));
   }
   variable->value_count = text->value_count;
-  DEA_TRY(ctx, read_scatter(case_key, variable));
+  DEA_TRY(ctx, read_scatter(space, variable));
   const size_t steps = text->steps.origin != DEA_ABSENT ? (size_t)text->steps.si : 0;
   const double span = variable->high - variable->low;
   if (steps > DEA_EXPLORE_VALUES_MAX || (variable->param.whole && span >= DEA_EXPLORE_VALUES_MAX)) {
     return dea_finding_add(ctx, DEA_ERROR, text->text.name.location, "%s: at most %d values",
                            text->text.name.text, DEA_EXPLORE_VALUES_MAX);
   }
-  DEA_TRY(ctx, check_variable(case_key, variable));
+  DEA_TRY(ctx, check_variable(space, variable));
   const size_t own = variable->param.whole && steps == 0 && span >= 0 ? (size_t)span + 1 : steps;
   for (size_t i = 0; variable->value_count == 0 && i < own; i++) {
     variable->values[i] =
@@ -559,28 +557,38 @@ static dea_status read_variable(struct dea_case_key *case_key,
   return DEA_OK;
 }
 
-static dea_status read_variables(struct dea_case_key *case_key)
+static dea_status read_variables(struct dea_design_space *space)
 {
-  const struct dea_explore_file *file = case_key->file;
+  const struct dea_explore_file *file = space->file;
   for (size_t j = 0; j < file->variable_count; j++) {
-    DEA_TRY(case_key->ctx, read_variable(case_key, &file->variables[j], &case_key->variables[j]));
-    case_key->params[j] = case_key->variables[j].param;
-    case_key->params[j].ties = case_key->variables[j].ties;
+    DEA_TRY(space->ctx, read_variable(space, &file->variables[j], &space->variables[j]));
+    space->params[j] = space->variables[j].param;
+    space->params[j].ties = space->variables[j].ties;
   }
-  case_key->variable_count = file->variable_count;
+  space->variable_count = file->variable_count;
   return DEA_OK;
 }
 
-static dea_status read_limit(struct dea_case_key *case_key, const struct dea_explore_limit *text)
+/* Number of a quantity of the file by its key; after a finding -1. */
+static dea_status find_column(const struct dea_design_space *space, const struct dea_label *label,
+                              int *out)
 {
-  struct dea_limit *limit = &case_key->limits[case_key->limit_count++];
-  struct dea_context *ctx = case_key->ctx;
-  *limit = (struct dea_limit){dea_case_key_quantity(case_key, text->quantity.text), NAN, NAN};
+  *out = dea_design_space_quantity(space, label->text);
+  return *out >= 0 ? DEA_OK
+                   : dea_finding_add(space->ctx, DEA_ERROR, label->location,
+                                     "'%.60s' is none of the quantities of this file", label->text);
+}
+
+static dea_status read_limit(struct dea_design_space *space, const struct dea_explore_limit *text)
+{
+  struct dea_limit *limit = &space->limits[space->limit_count++];
+  struct dea_context *ctx = space->ctx;
+  *limit = (struct dea_limit){-1, NAN, NAN};
+  DEA_TRY(ctx, find_column(space, &text->quantity, &limit->column));
   if (limit->column < 0) {
-    return dea_finding_add(ctx, DEA_ERROR, text->quantity.location,
-                           "'%.60s' is none of the quantities of this file", text->quantity.text);
+    return DEA_OK;
   }
-  const struct dea_column *column = &case_key->quantities[limit->column].shown;
+  const struct dea_column *column = &space->quantities[limit->column].shown;
   struct dea_device_param number = {.state = "", .param = {.unit = column->si_unit}};
   snprintf(number.param.name, sizeof number.param.name, "%.39s", column->key);
   if (text->above.text[0] != '\0') {
@@ -600,126 +608,91 @@ static dea_status read_limit(struct dea_case_key *case_key, const struct dea_exp
                                "a limit needs above or below");
 }
 
-static dea_status read_objectives(struct dea_case_key *case_key)
+static dea_status resolve_file(struct dea_design_space *space)
 {
-  const struct dea_explore_file *file = case_key->file;
-  for (size_t k = 0; k < file->objective_count; k++) {
-    const struct dea_label *label = &file->objectives[k].quantity;
-    case_key->objectives[k] = dea_case_key_quantity(case_key, label->text);
-    if (case_key->objectives[k] < 0) {
-      DEA_TRY(case_key->ctx,
-              dea_finding_add(case_key->ctx, DEA_ERROR, label->location,
-                              "'%.60s' is none of the quantities of this file", label->text));
-    }
-  }
-  return DEA_OK;
-}
-
-static dea_status resolve_file(struct dea_case_key *case_key)
-{
-  struct dea_context *ctx = case_key->ctx;
+  struct dea_context *ctx = space->ctx;
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  const struct dea_label *model = &case_key->file->model;
-  DEA_TRY(ctx, dea_model_seek(ctx, model->text, model->location, &case_key->model.type));
-  DEA_TRY(ctx, read_design(case_key));
-  DEA_TRY(ctx, read_quantities(case_key));
-  DEA_TRY(ctx, dea_from_fit_read(ctx, case_key->design, case_key->device, case_key->file));
-  DEA_TRY(ctx, read_variables(case_key));
-  for (size_t i = 0; i < case_key->file->limit_count; i++) {
-    DEA_TRY(ctx, read_limit(case_key, &case_key->file->limits[i]));
+  const struct dea_label *model = &space->file->model;
+  DEA_TRY(ctx, dea_model_seek(ctx, model->text, model->location, &space->model.type));
+  DEA_TRY(ctx, read_design(space));
+  DEA_TRY(ctx, read_quantities(space));
+  DEA_TRY(ctx, dea_from_fit_read(ctx, space->design, space->device, space->file));
+  DEA_TRY(ctx, read_variables(space));
+  for (size_t i = 0; i < space->file->limit_count; i++) {
+    DEA_TRY(ctx, read_limit(space, &space->file->limits[i]));
   }
-  DEA_TRY(ctx, read_objectives(case_key));
-  read_voltages(case_key);
+  for (size_t k = 0; k < space->file->objective_count; k++) {
+    DEA_TRY(ctx, find_column(space, &space->file->objectives[k].quantity, &space->objectives[k]));
+  }
+  read_voltages(space);
   const size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {
-    return dea_fail(ctx, DEA_E_DESIGN, "the file '%s' has %zu error%s", case_key->file->head.file,
+    return dea_fail(ctx, DEA_E_DESIGN, "the file '%s' has %zu error%s", space->file->head.file,
                     found, found > 1 ? "s" : "");
   }
-  DEA_TRY(ctx, dea_model_check(ctx, case_key->model.type, case_key->design, case_key->device));
-  DEA_TRY(ctx, compute_hash(case_key));
-  return prepare_model(case_key);
+  DEA_TRY(ctx, dea_model_check(ctx, space->model.type, space->design, space->device));
+  DEA_TRY(ctx, compute_hash(space));
+  return prepare_model(space);
 }
 
-dea_status dea_case_key_read(struct dea_context *ctx, const char *file, struct dea_case_key **out)
+dea_status dea_design_space_read(struct dea_context *ctx, const char *file,
+                                 struct dea_design_space **out)
 {
   *out = NULL;
-  struct dea_case_key *case_key = dea_alloc(ctx, 1, sizeof *case_key);
-  DEA_TRY_MEMORY(case_key != NULL);
-  case_key->ctx = ctx;
+  struct dea_design_space *space = dea_alloc(ctx, 1, sizeof *space);
+  DEA_TRY_MEMORY(space != NULL);
+  space->ctx = ctx;
   void *read;
   dea_status status = dea_fit_head_read(ctx, file, &dea_explore_form, &read);
-  case_key->file = read;
+  space->file = read;
   if (status == DEA_OK) {
     void *before = dea_c_locale_enter();
-    status = resolve_file(case_key);
+    status = resolve_file(space);
     dea_c_locale_leave(before);
   }
   if (status != DEA_OK) {
-    dea_case_key_destroy(case_key);
+    dea_design_space_destroy(space);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  *out = case_key;
+  *out = space;
   return DEA_OK;
 }
 
-void dea_case_key_destroy(struct dea_case_key *case_key)
+void dea_design_space_destroy(struct dea_design_space *space)
 {
-  if (case_key != NULL) {
-    case_key->model.ctx = case_key->ctx;
-    dea_device_model_end(&case_key->model);
-    dea_arena_free(&case_key->memory);
-    dea_device_destroy(case_key->ctx, case_key->device);
-    dea_design_destroy(case_key->ctx, case_key->design);
-    dea_free(case_key->ctx, case_key->bytes);
-    dea_free(case_key->ctx, case_key->path);
-    dea_fit_head_destroy(case_key->ctx, case_key->file);
-    dea_free(case_key->ctx, case_key);
+  if (space != NULL) {
+    space->model.ctx = space->ctx;
+    dea_device_model_end(&space->model);
+    dea_arena_free(&space->memory);
+    dea_device_destroy(space->ctx, space->device);
+    dea_design_destroy(space->ctx, space->design);
+    dea_free(space->ctx, space->bytes);
+    dea_free(space->ctx, space->path);
+    dea_fit_head_destroy(space->ctx, space->file);
+    dea_free(space->ctx, space);
   }
 }
 
-int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key)
+int dea_design_space_quantity(const struct dea_design_space *space, const char *key)
 {
-  for (size_t i = 0; i < case_key->quantity_count; i++) {
-    if (strcmp(case_key->quantities[i].key, key) == 0) {
+  for (size_t i = 0; i < space->quantity_count; i++) {
+    if (strcmp(space->quantities[i].key, key) == 0) {
       return (int)i;
     }
   }
   return -1;
 }
 
-bool dea_case_key_is_held(const struct dea_case_key *case_key, size_t quantity)
+bool dea_design_space_is_held(const struct dea_design_space *space, size_t quantity)
 {
-  return case_key->model.group_count > 1 &&
-         strcmp(case_key->quantities[quantity].key, "force_N") == 0;
+  return space->model.group_count > 1 && strcmp(space->quantities[quantity].key, "force_N") == 0;
 }
 
-/* A word at voltage k, which several have to say. */
-static void name_at(const struct dea_case_key *case_key, const char *word, size_t k, char *out,
-                    size_t size)
-{
-  if (case_key->voltage_count == 1) {
-    snprintf(out, size, "%s", word);
-  } else {
-    snprintf(out, size, "%s@%.6g", word, case_key->voltages_V[k]);
-  }
-}
-
-void dea_case_key_value_name(const struct dea_case_key *case_key, size_t i, char *out, size_t size)
-{
-  const size_t count = case_key->quantity_count;
-  name_at(case_key, case_key->quantities[i % count].key, i / count, out, size);
-}
-
-void dea_case_key_flags_name(const struct dea_case_key *case_key, size_t k, char *out, size_t size)
-{
-  name_at(case_key, "flags", k, out, size);
-}
-
-double dea_limit_margin(const struct dea_case_key *case_key, const struct dea_limit *limit,
+double dea_limit_margin(const struct dea_design_space *space, const struct dea_limit *limit,
                         const double *q)
 {
   const double value =
-      q[(case_key->voltage_count - 1) * case_key->quantity_count + (size_t)limit->column];
+      q[(space->voltage_count - 1) * space->quantity_count + (size_t)limit->column];
   const double above = isnan(limit->above)
                            ? INFINITY
                            : (value - limit->above) / (limit->above != 0 ? fabs(limit->above) : 1);

@@ -1,5 +1,5 @@
-/* What a file of dea sweep asks, resolved: the device as an evaluator, its variables and columns.
- */
+/* What a file of dea sweep or dea optimise asks, resolved: the device as an evaluator, its
+ * variables and what is kept of each design. */
 #pragma once
 
 #include "base/arena.h"
@@ -8,16 +8,18 @@
 #include "job/device_evaluation.h"
 #include "study/critical.h"
 
-/* What is kept of a design: a column of load points, what a monitor of a device made of plies
- * shows, or a voltage at which the film comes to an end. */
+/* What is kept of a design. */
 struct dea_explored {
   struct dea_column shown; // its key is the text below
   char key[80];            // as the file has it: "centre_z_m", "plate_turn_y_rad"
   int column;              // of the context; -1: a voltage of an event
-  bool is_frequency;       // that of the lowest mode, which solving leaves out
-  bool is_critical;        // a voltage of the event below
+  enum dea_explored_source {
+    DEA_EXPLORED_POINT,     // a column of load points
+    DEA_EXPLORED_MONITOR,   // what a monitor or channel of a device made of plies shows: `of`
+    DEA_EXPLORED_FREQUENCY, // of the lowest mode, which solving leaves out
+    DEA_EXPLORED_CRITICAL,  // the voltage of `event`, at which the film comes to an end
+  } source;
   enum dea_event_kind event;
-  bool is_seen; // of a monitor or channel: that below
   struct dea_monitor_column of;
 };
 
@@ -37,7 +39,7 @@ struct dea_limit {
   double above, below; // SI; NAN: none
 };
 
-struct dea_case_key {
+struct dea_design_space {
   struct dea_context *ctx;
   struct dea_explore_file *file;
   struct dea_design *design;
@@ -68,27 +70,21 @@ struct dea_case_key {
   char why[DEA_CRITICAL_WHY_SIZE]; // of the last one that there is not
   struct dea_arena memory;
   char id[DEA_CASE_ID_SIZE];
-  struct dea_case *now; // what is evaluated, while slopes are taken too
-  /* Told of each stop of these, as of struct dea_device_model; NULL: nobody. */
-  dea_status (*stood)(struct dea_case_key *case_key, struct dea_model *model,
-                      const struct dea_device *device, size_t stop);
+  struct dea_case *now; // what is evaluated, where slopes are wanted too
 };
 
 /* Reads a file and resolves it. All that is wrong becomes findings, at its place, before anything
  * is computed; DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
-dea_status dea_case_key_read(struct dea_context *ctx, const char *file, struct dea_case_key **out);
-void dea_case_key_destroy(struct dea_case_key *case_key);
-/* Number of a quantity of the question by its key, or -1. */
-int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key);
+dea_status dea_design_space_read(struct dea_context *ctx, const char *file,
+                                 struct dea_design_space **out);
+void dea_design_space_destroy(struct dea_design_space *space);
+/* Number of a quantity of the space by its key, or -1. */
+int dea_design_space_quantity(const struct dea_design_space *space, const char *key);
 /* Whether a quantity is taken with the tip of compute.force held at its first depth. */
-bool dea_case_key_is_held(const struct dea_case_key *case_key, size_t quantity);
-/* Name of value i of a case: "centre_z_m", with several voltages "centre_z_m@6000". */
-void dea_case_key_value_name(const struct dea_case_key *case_key, size_t i, char *out, size_t size);
-/* The same of the flags at voltage k: "flags", "flags@6000". */
-void dea_case_key_flags_name(const struct dea_case_key *case_key, size_t k, char *out, size_t size);
+bool dea_design_space_is_held(const struct dea_design_space *space, size_t quantity);
 /* A limit's margin at a case's last voltage, over its scale: below 0 it is crossed; NAN: no value.
  */
-double dea_limit_margin(const struct dea_case_key *case_key, const struct dea_limit *limit,
+double dea_limit_margin(const struct dea_design_space *space, const struct dea_limit *limit,
                         const double *q);
 /* Says that a name of the file is none of `what` [count], with the nearest of them. */
 dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *label,
@@ -98,8 +94,12 @@ dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *
  * from_fit. */
 dea_status dea_from_fit_read(struct dea_context *ctx, const struct dea_design *design,
                              const struct dea_device *device, struct dea_explore_file *io);
-/* The question's evaluator with gradients: at the last voltage, of quantities that an objective or
+/* The evaluator of a space with gradients: at the last voltage, of quantities that an objective or
  * a limit is of, by variables that are searched; NAN for all others, and where the model has none
  * at a design. The evaluator without gradients where the model has none of its own, or the file's
- * method wants none. user: lent by the question. */
-struct dea_evaluator dea_case_key_with_slopes(const struct dea_case_key *case_key);
+ * method wants none. user: lent by the space. */
+struct dea_evaluator dea_design_space_with_slopes(const struct dea_design_space *space);
+/* Adds these slopes to the case that is evaluated, of a model that stands at a stop. */
+dea_status dea_design_space_add_slopes(const struct dea_design_space *space,
+                                       struct dea_model *model, const struct dea_device *device,
+                                       size_t stop);
