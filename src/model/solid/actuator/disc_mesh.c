@@ -119,26 +119,22 @@ static dea_status build_plane(struct dea_context *ctx, const struct dea_device *
   return DEA_CHAIN(ctx, name_groups(ctx, mesh));
 }
 
-/* Blocks of a disc's plate, extruded through a layout of its own. like: with the elements of that
- * mesh, moved (DEA_E_ARGUMENT where other elements come of it); NULL: those of the plate. device:
- * need not have a layout. On failure, or where it does not *fit, out is empty. */
-static dea_status create_blocks(struct dea_context *ctx, const struct dea_device *device,
+dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device *device,
                                 const struct dea_model_settings *settings,
+                                const struct dea_fibre_disc *plate,
                                 const struct dea_layout_mesh *like, struct dea_layout_mesh *out,
                                 bool *fit)
 {
-  struct dea_fibre_disc plate;
-  find_plate(device, settings, &plate);
-  const bool whole = plate.sectors == dea_fibre_disc_sectors(&plate);
+  const bool whole = plate->sectors == dea_fibre_disc_sectors(plate);
   *out = (struct dea_layout_mesh){
       .memory = {.ctx = ctx},
-      .plate = plate,
+      .plate = *plate,
       .disc = device,
-      .cuts = like != NULL ? like->cuts : plate,
-      .membrane = plate.membrane,
+      .cuts = like != NULL ? like->cuts : *plate,
+      .membrane = plate->membrane,
       .sector = {.angle_rad = like != NULL ? like->sector.angle_rad : device->angle_rad,
-                 .fold = whole ? 0 : dea_fibre_disc_sectors(&plate) / 2},
-      .bottom_m = plate.membrane ? 0 : -0.5 * plate.film_thickness - plate.electrode_thickness};
+                 .fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
+      .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
   DEA_TRY_ELSE(ctx, build_plane(ctx, device, out, fit), dea_layout_mesh_free(ctx, out));
   if (!*fit) {
     dea_layout_mesh_free(ctx, out);
@@ -154,8 +150,12 @@ dea_status dea_device_mesh_create(struct dea_context *ctx, const struct dea_devi
 {
   bool blocks = device->disc && device->centre_m[0] == 0 && device->centre_m[1] == 0 &&
                 settings->adapt.monitor == NULL && settings->size_count == 0;
+  struct dea_fibre_disc plate;
   *out = (struct dea_layout_mesh){0};
-  DEA_TRY(ctx, blocks ? create_blocks(ctx, device, settings, NULL, out, &blocks) : DEA_OK);
+  if (blocks) {
+    find_plate(device, settings, &plate);
+    DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, NULL, out, &blocks));
+  }
   return DEA_CHAIN(ctx,
                    blocks ? DEA_OK : dea_layout_mesh_create(ctx, device->layout, settings, out));
 }
@@ -182,6 +182,7 @@ dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_devi
                                   const struct dea_model_settings *settings,
                                   const struct dea_layout_mesh *like, struct dea_layout_mesh *out)
 {
+  struct dea_fibre_disc plate;
   struct dea_device near;
   bool fit;
   *out = (struct dea_layout_mesh){0};
@@ -189,7 +190,9 @@ dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_devi
     return DEA_CHAIN(ctx, dea_mesh_follow(ctx, device->layout, settings, like, out));
   }
   DEA_TRY(ctx, !device->disc ? find_near(ctx, device, like, &near) : DEA_OK);
-  DEA_TRY(ctx, create_blocks(ctx, device->disc ? device : &near, settings, like, out, &fit));
+  const struct dea_device *disc = device->disc ? device : &near;
+  find_plate(disc, settings, &plate);
+  DEA_TRY(ctx, dea_disc_mesh_create(ctx, disc, settings, &plate, like, out, &fit));
   if (!fit) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a monitor's region");
   }
