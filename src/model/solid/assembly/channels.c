@@ -25,10 +25,9 @@ dea_status dea_solid_channels_create(struct dea_context *ctx, struct dea_solid *
   }
   p->between = dea_arena_alloc(&s->memory, elements, sizeof *p->between);
   p->active = dea_arena_alloc(&s->memory, elements, sizeof *p->active);
-  p->share = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof *p->share);
-  s->state.own_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
-  s->state.lift_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
-  s->state.own_goal_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
+  dea_solid_alloc_doubles(
+      &s->memory, p->channel_count + 1,
+      (double **[]){&p->share, &s->state.own_V, &s->state.lift_V, &s->state.own_goal_V, NULL});
   DEA_TRY(ctx, dea_arena_status(&s->memory));
   for (size_t k = 1; k <= p->channel_count; k++) {
     p->share[k] = options->share != NULL ? options->share[k - 1] : 1;

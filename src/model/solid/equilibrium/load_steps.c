@@ -112,6 +112,7 @@ dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid 
                                       struct dea_solid_report *report)
 {
   *report = (struct dea_solid_report){.load_factor = 1};
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
   return DEA_CHAIN(ctx, report->unstable_modes > 0 ? descend_from(ctx, s, side, report) : DEA_OK);
 }

@@ -23,6 +23,7 @@ static const double max_off_tangent = 1; // of the tangent step: farther off lie
 
 /* To controls that are wanted. */
 struct search {
+  struct dea_arena memory; // of the controls
   struct dea_solid *s;
   const struct dea_solid_watch *watch;
   struct dea_solid_report *report;
@@ -560,17 +561,13 @@ static dea_status go(struct dea_context *ctx, struct search *a)
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path to there has too many turns");
 }
 
-static dea_status search_create(struct dea_context *ctx, struct dea_arena *memory, struct search *a)
+static dea_status search_create(struct dea_context *ctx, struct search *a)
 {
-  struct dea_solid *s = a->s;
-  const size_t count = s->work.load_steps.control_count;
-  memory->ctx = ctx;
-  dea_solid_alloc_doubles(memory, count,
+  dea_solid_alloc_doubles(&a->memory, a->s->work.load_steps.control_count,
                           (double **[]){&a->goal, &a->next, &a->bad, &a->at, &a->begin, NULL});
-  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(memory));
-  status = status == DEA_OK ? dea_solid_save_state(ctx, s, &a->limit) : status;
-  status = status == DEA_OK ? dea_solid_save_state(ctx, s, &a->start) : status;
-  return status;
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&a->memory)));
+  DEA_TRY(ctx, dea_solid_save_state(ctx, a->s, &a->limit));
+  return DEA_CHAIN(ctx, dea_solid_save_state(ctx, a->s, &a->start));
 }
 
 dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid *s,
@@ -578,13 +575,12 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
                                        const struct dea_solid_watch *watch,
                                        struct dea_solid_report *report, struct dea_solid_stop *stop)
 {
-  struct search a = {.s = s, .watch = watch, .report = report, .stop = stop, .taut = taut};
-  struct dea_arena memory;
-  memset(&memory, 0, sizeof memory);
+  struct search a = {
+      .memory = {.ctx = ctx}, .s = s, .watch = watch, .report = report, .stop = stop, .taut = taut};
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   *report = (struct dea_solid_report){.load_factor = 0};
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_load_steps_prepare(ctx, s)));
-  dea_status status = search_create(ctx, &memory, &a);
+  dea_status status = search_create(ctx, &a);
   if (status == DEA_OK) {
     const int divergent = s->settings.max_divergent;
     s->settings.max_divergent = MAX_DIVERGENT;
@@ -601,6 +597,6 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
   }
   dea_solid_saved_state_free(&a.limit);
   dea_solid_saved_state_free(&a.start);
-  dea_arena_free(&memory);
+  dea_arena_free(&a.memory);
   return DEA_CHAIN(ctx, status);
 }
