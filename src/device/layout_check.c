@@ -16,9 +16,10 @@ static const struct dea_region *region_of(const struct dea_layout *l, size_t num
 }
 
 /* What two regions have in common; false where it cannot be told. out: to be freed. */
-static bool common_of_regions(struct dea_context *ctx, const struct dea_region *a,
-                              const struct dea_region *b, struct dea_region *out)
+static bool common_of(const struct dea_region *a, const struct dea_region *b,
+                      struct dea_region *out)
 {
+  struct dea_context *ctx = a->ctx;
   double one[4], two[4];
   *out = (struct dea_region){.ctx = ctx};
   dea_region_box_m(a, one);
@@ -35,18 +36,13 @@ static bool common_of_regions(struct dea_context *ctx, const struct dea_region *
   return status == DEA_OK;
 }
 
-static bool common_of(const struct dea_layout *l, size_t a, size_t b, struct dea_region *out)
-{
-  return common_of_regions(l->ctx, region_of(l, a), region_of(l, b), out);
-}
-
 double dea_layout_overlap_m2(const struct dea_layout *l, size_t a, size_t b)
 {
   struct dea_region common;
   if (a == b) {
     return dea_region_area_m2(region_of(l, a));
   }
-  bool known = common_of(l, a, b, &common);
+  bool known = common_of(region_of(l, a), region_of(l, b), &common);
   double area = known ? dea_region_area_m2(&common) : NAN;
   dea_region_free(&common);
   return area;
@@ -265,7 +261,7 @@ static dea_status check_pair(struct dea_context *ctx, const struct dea_layout *l
   }
   double least = fmin(dea_region_area_m2(region_of(l, a->region)),
                       dea_region_area_m2(region_of(l, b->region)));
-  if (common_of(l, a->region, b->region, &common) &&
+  if (common_of(region_of(l, a->region), region_of(l, b->region), &common) &&
       dea_region_area_m2(&common) > rounding * least) {
     double at[2];
     dea_region_centroid_m(&common, at);
@@ -378,8 +374,7 @@ static dea_status unite_plies(struct dea_context *ctx, const struct dea_layout *
 static bool region_meets(const struct dea_layout *l, size_t region, const struct dea_region *part)
 {
   struct dea_region common;
-  bool meets =
-      !common_of_regions(l->ctx, region_of(l, region), part, &common) || common.contour_count > 0;
+  bool meets = !common_of(region_of(l, region), part, &common) || common.contour_count > 0;
   dea_region_free(&common);
   return meets;
 }

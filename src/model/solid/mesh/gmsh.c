@@ -564,15 +564,15 @@ static dea_status classify(struct dea_context *ctx, const struct dea_gmsh_plan *
   mesh->edges = NULL;
   mesh->edge_count = 0;
   dea_plane_mesh_forget_names(ctx, mesh);
-  unsigned char *within = dea_alloc(ctx, plan->shape_count, 1);
-  int *number = dea_alloc(ctx, mesh->node_count, sizeof *number);
-  dea_status status = within != NULL && number != NULL ? DEA_OK : DEA_E_MEMORY;
+  struct dea_arena memory = {.ctx = ctx};
+  unsigned char *within = dea_arena_alloc(&memory, plan->shape_count, 1);
+  int *number = dea_arena_alloc(&memory, mesh->node_count, sizeof *number);
+  dea_status status = dea_arena_status(&memory);
   status = status == DEA_OK ? name_all(ctx, plan, mesh) : status;
   status = status == DEA_OK ? read_elements(ctx, plan, within, number, mesh) : status;
   status =
       status == DEA_OK ? read_edges(ctx, plan, before, before_count, number, close, mesh) : status;
-  dea_free(ctx, number);
-  dea_free(ctx, within);
+  dea_arena_free(&memory);
   dea_free(ctx, before);
   DEA_TRY(ctx, status);
   return DEA_CHAIN(ctx, check_groups(ctx, mesh));
