@@ -5,6 +5,7 @@
  * default and meaning of every member. */
 #pragma once
 
+#include "base/schema.h"
 #include "base/value.h"
 #include "base/yaml.h"
 #include "design/fabrication.h"
@@ -51,9 +52,8 @@ struct dea_design_variant {
 /* A section of `compute` whose keys, and the struct that they fill, belong to who reads it: a
  * study. */
 struct dea_design_section {
-  const char *key;                 // "convergence"
-  const struct dea_record *record; // its keys; offsets count from the settings
-  size_t size;                     // of the settings
+  struct dea_record record; // its name, "convergence", and keys; offsets count from the settings
+  size_t size;              // of the settings
   /* Adds findings where values do not go together; NULL: they always do. */
   dea_status (*check)(struct dea_context *ctx, const struct dea_design *design,
                       const struct dea_settings *settings);

@@ -380,9 +380,9 @@ static struct dea_field section_field(const struct dea_design_section *section, 
 {
   size_t at = AT(compute.settings) + index * sizeof(struct dea_settings);
   return (struct dea_field)DEA_FIELD_ROW(
-      SETTINGS, section->key, at + offsetof(struct dea_settings, values),
+      SETTINGS, section->record.name, at + offsetof(struct dea_settings, values),
       .present_offset = at + offsetof(struct dea_settings, written), .element_size = section->size,
-      .record = section->record, .doc = section->record->doc);
+      .record = &section->record, .doc = section->record.doc);
 }
 
 /* Keys of the short form that the general one has not, and what to write there. */

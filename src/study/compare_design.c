@@ -283,32 +283,27 @@ static dea_status add_key(struct dea_context *ctx, struct dea_panel *panel,
                           const struct shown list[], size_t count, bool voltages)
 {
   size_t entries = 0;
-  char title[DEA_LABEL_SIZE];
-  for (size_t i = 0; i < count; i++) {
-    struct dea_series look = list[i].look;
-    look.style = DEA_LINE;
-    if (is_first(list, i, true)) {
-      dea_label_escape(list[i].variant->name, title, sizeof title);
-      size_t n = strlen(title);
-      if (voltages) {
-        snprintf(title + n, sizeof title - n, ", %.3g kV%s",
-                 1e-3 * list[i].variant->profile.voltage_V,
-                 ends_trusted(&list[i].variant->curve) ? "" : " (?)");
-      }
-      DEA_TRY(ctx, add_entry(ctx, panel, &look, title));
-      entries++;
-    }
-  }
-  bool several =
+  const bool several =
       count > 0 && strcmp(list[0].variant->curve.model, list[count - 1].variant->curve.model) != 0;
-  for (size_t i = 0; i < count && several; i++) {
+  for (size_t k = 0; k < (several ? 2 * count : count); k++) { // designs, then models
+    const bool design = k < count;
+    const size_t i = k % count;
+    const struct dea_variant *variant = list[i].variant;
     struct dea_series look = list[i].look;
-    look.colour = DEA_GREY;
-    if (is_first(list, i, false)) {
-      dea_label_escape(list[i].variant->curve.model, title, sizeof title);
-      DEA_TRY(ctx, add_entry(ctx, panel, &look, title));
-      entries++;
+    char title[DEA_LABEL_SIZE];
+    if (!is_first(list, i, design)) {
+      continue;
     }
+    dea_label_escape(design ? variant->name : variant->curve.model, title, sizeof title);
+    look.style = design ? DEA_LINE : look.style;
+    look.colour = design ? look.colour : DEA_GREY;
+    if (design && voltages) {
+      const size_t length = strlen(title);
+      snprintf(title + length, sizeof title - length, ", %.3g kV%s",
+               1e-3 * variant->profile.voltage_V, ends_trusted(&variant->curve) ? "" : " (?)");
+    }
+    DEA_TRY(ctx, add_entry(ctx, panel, &look, title));
+    entries++;
   }
   size_t longest = 0;
   for (size_t i = 0; i < panel->series_count; i++) {
@@ -335,7 +330,7 @@ static bool moves(const struct shown list[], size_t count, int column)
 }
 
 /* A panel a quantity that there is something of. */
-static dea_status show(struct dea_context *ctx, const struct shown list[], size_t count,
+static dea_status draw(struct dea_context *ctx, const struct shown list[], size_t count,
                        const struct quantity *quantities, size_t quantity_count,
                        struct dea_plot *plot)
 {
@@ -375,14 +370,14 @@ static dea_status build_designs(struct dea_context *ctx, const struct dea_result
     dea_figure_label(column, monitors[k].label, DEA_LABEL_SIZE);
   }
   if (found > 0) {
-    return show(ctx, list, count, monitors, found, plot);
+    return draw(ctx, list, count, monitors, found, plot);
   }
   const struct quantity of_disc[] = {
       {dea_point_column_find("centre_z_m"), 1e6, 0, false, "Centre {/:Italic z} (\302\265m)"},
       {dea_point_column_find("electrode_stretch"), 100, -1, false, "Electrode strain (%)"}};
   // bounds of many times the size are in figure design_tips
   const size_t first = moves(list, count, of_disc[0].column) ? 0 : 1;
-  return show(ctx, list, count, of_disc + first, 2 - first, plot);
+  return draw(ctx, list, count, of_disc + first, 2 - first, plot);
 }
 
 /* What models predict, and in a panel of its own, since it is many times as large, what they know
@@ -395,7 +390,7 @@ static dea_status build_design_tips(struct dea_context *ctx, const struct dea_re
   const struct quantity both[] = {{z, 1e6, 0, false, "Fibre tip {/:Italic z} (\302\265m)"},
                                   {z, 1e3, 0, true, "Bound of tip {/:Italic z} (mm)"}};
   plot->second_height = 0.7;
-  return show(ctx, list, find_shown(result, false, list), both, 2, plot);
+  return draw(ctx, list, find_shown(result, false, list), both, 2, plot);
 }
 
 static dea_status add_profile(struct dea_context *ctx, struct dea_panel *panel,

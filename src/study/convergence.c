@@ -37,12 +37,6 @@ static const struct dea_field fields[] = {
                    .max = 1, .default_text = "0.02"),
 };
 
-static const struct dea_record record = {
-    "convergence",
-    "study of convergence, made when this section is there ({}) or with --study: the same on ever "
-    "finer meshes (3d)",
-    fields, DEA_COUNT(fields)};
-
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_settings *given)
 {
@@ -61,7 +55,12 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 }
 
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
+    .record = {"convergence",
+               "study of convergence, made when this section is there ({}) or with --study: the "
+               "same on ever finer meshes (3d)",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings),
+    .check = check};
 
 // Study ------------------------------------------------------------------------------------------
 

@@ -44,12 +44,18 @@ static dea_status build_side(struct dea_context *ctx, const struct dea_design_gr
   return DEA_OK;
 }
 
-/* To both sides, or to the one where there is a device: a monitor may stand at the edge of its ply,
- * which cannot be shorter. */
-static dea_status build_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
+/* Makes the changed devices, in room that is freed by free_changes also after a failure: to both
+ * sides, or to the one where there is a device. A monitor may stand at the edge of its ply, which
+ * cannot be shorter. */
+static dea_status begin_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
                                 struct changed *all)
 {
-  double share = ask->type->gradient != NULL ? step_at_state : step_anew;
+  const double share = ask->type->gradient != NULL ? step_at_state : step_anew;
+  *all = (struct changed){.memory = {.ctx = ctx}};
+  all->devices = dea_arena_alloc(&all->memory, 2 * ask->number_count, sizeof *all->devices);
+  all->pressed = dea_arena_alloc(&all->memory, 2 * ask->number_count, sizeof *all->pressed);
+  all->changes = dea_arena_alloc(&all->memory, ask->number_count, sizeof *all->changes);
+  DEA_TRY(ctx, dea_arena_status(&all->memory));
   for (size_t i = 0; i < ask->number_count; i++) {
     const struct dea_design_number *number = &ask->numbers[i];
     const double step = share * (number->reach > 0 ? number->reach : number->value);
@@ -68,18 +74,6 @@ static dea_status build_changes(struct dea_context *ctx, const struct dea_design
   return DEA_OK;
 }
 
-/* Makes the changed devices, in room that is freed by free_changes also after a failure. */
-static dea_status begin_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
-                                struct changed *all)
-{
-  *all = (struct changed){.memory = {.ctx = ctx}};
-  all->devices = dea_arena_alloc(&all->memory, 2 * ask->number_count, sizeof *all->devices);
-  all->pressed = dea_arena_alloc(&all->memory, 2 * ask->number_count, sizeof *all->pressed);
-  all->changes = dea_arena_alloc(&all->memory, ask->number_count, sizeof *all->changes);
-  DEA_TRY(ctx, dea_arena_status(&all->memory));
-  return DEA_CHAIN(ctx, build_changes(ctx, ask, all));
-}
-
 static void free_changes(const struct dea_design_gradient *ask, struct changed *all)
 {
   for (size_t i = 0; all->devices != NULL && i < 2 * ask->number_count; i++) {
@@ -95,17 +89,10 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
   const struct dea_model_settings settings = dea_model_settings_of(ask->design);
   dea_status status = begin_changes(ctx, ask, &all);
   if (status == DEA_OK) {
-    const struct dea_gradient_request question = {.changes = all.changes,
-                                                  .change_count = ask->number_count,
-                                                  .columns = ask->columns,
-                                                  .column_count = ask->column_count,
-                                                  .modes = ask->modes,
-                                                  .monitors = ask->monitors,
-                                                  .monitor_count = ask->monitor_count,
-                                                  .motions = ask->motions,
-                                                  .holds_stretch = ask->stretch > 0,
-                                                  .stretch = ask->stretch};
-    status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
+    struct dea_gradient_request of = ask->of;
+    of.changes = all.changes;
+    of.change_count = ask->number_count;
+    status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &of, slopes);
   }
   free_changes(ask, &all);
   return DEA_CHAIN(ctx, status);

@@ -11,27 +11,19 @@ struct dea_design_gradient {
   const struct dea_design *design;
   const struct dea_device *device;
   double voltage_V;
-  /* It stands at a point of its path with this stretch of the electrode, which is held while the
-   * voltage follows; 0: the voltage is held. */
-  double stretch;
   const struct dea_pressed *pressed;       // the tip of the model; NULL: it has none
   const struct dea_design_number *numbers; // [number_count]
   size_t number_count;
-  const int *columns; // [column_count] of load points
-  size_t column_count;
-  const size_t *modes;    // [column_count] of frequencies; NULL: the lowest
-  const size_t *monitors; // [monitor_count] of the layout
-  size_t monitor_count;
-  const enum dea_observed *motions; // [monitor_count] of them; NULL: the main ones
+  struct dea_gradient_request of; // of what; its changes are those of the numbers
 };
 
-/* slopes [number_count][column_count + monitor_count], SI of the quantity by SI of the number: NAN
+/* slopes [number_count][dea_gradient_width], SI of the quantity by SI of the number: NAN
  * where the model knows none, or its mesh cannot follow. */
 dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_design_gradient *ask,
                                     double *slopes);
 
-/* slopes [number_count] of a critical voltage that was found of the device; model, voltage, columns
- * and monitors of the question are not looked at. NAN as above, and by "voltage". */
+/* slopes [number_count] of a critical voltage that was found of the device; model, voltage and
+ * what slopes are of are not looked at. NAN as above, and by "voltage". */
 dea_status dea_design_gradient_critical(struct dea_context *ctx,
                                         const struct dea_design_gradient *ask,
                                         const struct dea_critical *critical, double *slopes);

@@ -57,10 +57,6 @@ static const struct dea_field fields[] = {
                    DEA_LIST(1, DEA_DESIGN_STOPS_MAX, struct dea_quantity, AT(preload_count))),
 };
 
-static const struct dea_record record = {study_name,
-                                         "force on a rigid tip against the middle of the film (3d)",
-                                         fields, DEA_COUNT(fields)};
-
 /* The electrode of a disc is the part that moves. */
 static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
                       const struct dea_device *device)
@@ -80,7 +76,10 @@ static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
 }
 
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings), .fit = fit};
+    .record = {study_name, "force on a rigid tip against the middle of the film (3d)", fields,
+               DEA_COUNT(fields)},
+    .size = sizeof(struct settings),
+    .fit = fit};
 
 static const struct settings *settings_of(const struct dea_design *design)
 {

@@ -48,10 +48,6 @@ static const struct dea_field fields[] = {
                    .max = 1e3, .default_text = "0 s"),
 };
 
-static const struct dea_record record = {
-    study_name, "study of the response to a small AC excitation of the voltage about a bias (3d)",
-    fields, DEA_COUNT(fields)};
-
 /* Frequencies rise. */
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_settings *given)
@@ -71,7 +67,11 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 }
 
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
+    .record = {study_name,
+               "study of the response to a small AC excitation of the voltage about a bias (3d)",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings),
+    .check = check};
 
 static const struct settings *settings_of(const struct dea_design *design)
 {

@@ -72,12 +72,6 @@ static const struct dea_field fields[] = {
                           "[0 kV, 3 kV, 5 kV]"),
 };
 
-static const struct dea_record record = {study_name,
-                                         "study of force against displacement of a body, or of "
-                                         "pressures, at voltages, or of a charge (3d, devices of "
-                                         "the general form)",
-                                         fields, DEA_COUNT(fields)};
-
 /* The range that is asked for; RANGES: none. */
 static enum range range_of(const struct settings *settings)
 {
@@ -198,11 +192,14 @@ static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
   return DEA_OK;
 }
 
-static const struct dea_design_section section = {.key = study_name,
-                                                  .record = &record,
-                                                  .size = sizeof(struct settings),
-                                                  .check = check,
-                                                  .fit = fit};
+static const struct dea_design_section section = {
+    .record = {study_name,
+               "study of force against displacement of a body, or of pressures, at voltages, or of "
+               "a charge (3d, devices of the general form)",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings),
+    .check = check,
+    .fit = fit};
 
 static const struct settings *settings_of(const struct dea_design *design)
 {
@@ -648,28 +645,24 @@ static const char *height_of(const struct dea_result_table *table)
   return high >= -low ? "highest_z_m" : "lowest_z_m";
 }
 
+/* The first axes that there is something of. */
 static struct axes axes_of(const struct dea_result_table *table)
 {
-  static const char shift[] = "Displacement of the body (mm)", turn[] = "Turn of the body (deg)";
-  bool turns = has(table, "turn_rad"), shifts = has(table, "shift_m");
-  if (has(table, "pressure_Pa")) {
-    struct axes out = {"pressure_Pa", "shift_m", "Pressure (kPa)", shift, 1e-3, 1e3};
-    if (turns) {
-      out.y = "turn_rad";
-      out.y_label = turn;
-      out.y_factor = degrees;
-    } else if (!shifts) {
-      out.y = height_of(table);
-      out.y_label = "Height of the film (mm)";
-    }
-    return out;
+  static const char shift[] = "Displacement of the body (mm)", turn[] = "Turn of the body (deg)",
+                    pressure[] = "Pressure (kPa)";
+  const struct axes all[] = {
+      {"pressure_Pa", "turn_rad", pressure, turn, 1e-3, degrees},
+      {"pressure_Pa", "shift_m", pressure, shift, 1e-3, 1e3},
+      {"pressure_Pa", height_of(table), pressure, "Height of the film (mm)", 1e-3, 1e3},
+      {"charge_C", "supply_voltage_V", "Charge (nC)", "Voltage (kV)", 1e9, 1e-3},
+      {"turn_rad", "moment_N_m", turn, "Moment ({/Symbol m}N m)", degrees, 1e6},
+      {"shift_m", "force_N", shift, "Force {/:Italic F} (mN)", 1e3, 1e3},
+  };
+  size_t k = 0;
+  while (k + 1 < DEA_COUNT(all) && !(has(table, all[k].x) && has(table, all[k].y))) {
+    k++;
   }
-  if (has(table, "charge_C")) {
-    return (struct axes){"charge_C", "supply_voltage_V", "Charge (nC)", "Voltage (kV)", 1e9, 1e-3};
-  }
-  return turns ? (struct axes){"turn_rad", "moment_N_m", turn, "Moment ({/Symbol m}N m)",
-                               degrees,    1e6}
-               : (struct axes){"shift_m", "force_N", shift, "Force {/:Italic F} (mN)", 1e3, 1e3};
+  return all[k];
 }
 
 /* End of the rows that are of one line and one way. */

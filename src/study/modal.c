@@ -28,14 +28,12 @@ static const struct dea_field fields[] = {
                           "[0 kV, 4 kV, 8 kV]"),
 };
 
-static const struct dea_record record = {
-    study_name,
-    "study of vibrations, made when this section is there ({}) or with --study: frequencies and "
-    "shapes about voltages (3d)",
-    fields, DEA_COUNT(fields)};
-
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings)};
+    .record = {study_name,
+               "study of vibrations, made when this section is there ({}) or with --study: "
+               "frequencies and shapes about voltages (3d)",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings)};
 
 bool dea_modal_asked(const struct dea_design *design)
 {

@@ -10,9 +10,7 @@
       DEA_BARE("number_value", "value", "of the number, in its unit"),                             \
       DEA_TEXT_COLUMN("number_unit", "unit", "of the number")
 #define DEA_NUMBER_TOLERANCE                                                                       \
-  {                                                                                                \
-    .key = "tolerance", .title = "tolerance", .meaning = "of the workshop, in the number's unit"   \
-  }
+  DEA_BARE("tolerance", "tolerance", "of the workshop, in the number's unit")
 
 /* A number as people read it, in a unit that fits. */
 void dea_number_text(double value, const char *unit, char *out, size_t size);

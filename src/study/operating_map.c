@@ -55,14 +55,13 @@ static const struct dea_field fields[] = {
     DEA_INTEGER_ROW("rows", AT(rows), "9", "values of each number", .min = 2, .max = 101,
                     .absent_text = "33, of model 3d 5"),
 };
-static const struct dea_record record = {
-    "operating_map",
-    "study of the voltages at which the actuator works against numbers of the design, made when "
-    "this section is there ({}) or with --study: of model 3d by sweeps, where this section is "
-    "there",
-    fields, DEA_COUNT(fields)};
 static const struct dea_design_section section = {
-    .key = "operating_map", .record = &record, .size = sizeof(struct settings)};
+    .record = {"operating_map",
+               "study of the voltages at which the actuator works against numbers of the design, "
+               "made when this section is there ({}) or with --study: of model 3d by sweeps, where "
+               "this section is there",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings)};
 
 // Numbers and quantity ---------------------------------------------------------------------------
 

@@ -46,16 +46,14 @@ static const struct dea_field fields[] = {
         .min = 1, .max = DEA_DESIGN_MODES_MAX, .default_text = "1"),
 };
 
-static const struct dea_record record = {
-    study_name,
-    "study of sensitivity, made when this section is there ({}) or with --sensitivity: slopes by "
-    "the "
-    "numbers of the design of displacements, field, tension, capacitance and energy, with studies "
-    "modal, force and loading of what they add, and of critical voltages that the run has reached",
-    fields, DEA_COUNT(fields)};
-
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings)};
+    .record = {study_name,
+               "study of sensitivity, made when this section is there ({}) or with --sensitivity: "
+               "slopes by the numbers of the design of displacements, field, tension, capacitance "
+               "and energy, with studies modal, force and loading of what they add, and of "
+               "critical voltages that the run has reached",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings)};
 
 // Tables -----------------------------------------------------------------------------------------
 
@@ -87,23 +85,10 @@ enum {
   DEA_NUMBER_COLUMN("held_stretch", "1", "1", 1, "held stretch",                                   \
                     "of the electrode, where that is held and the voltage follows")
 #define LOADED                                                                                     \
-  {                                                                                                \
-    .key = "loaded", .title = "loaded to",                                                         \
-    .meaning = "last value of compute.loading, SI, where its body or pressures are"                \
-  }
-#define MODE                                                                                       \
-  {                                                                                                \
-    .key = "mode", .title = "mode", .meaning = "that a frequency is of, from 1, the lowest"        \
-  }
-#define ELASTICITY(its_key, its_title)                                                             \
-  {                                                                                                \
-    .key = its_key, .title = its_title, .meaning = "its change in per cent by one per cent"        \
-  }
+  DEA_BARE("loaded", "loaded to",                                                                  \
+           "last value of compute.loading, SI, where its body or pressures are")
+#define ELASTICITY(key, title) DEA_BARE(key, title, "its change in per cent by one per cent")
 #define FLAGS DEA_TEXT_COLUMN("flags", "flags", "why the state there is not to be trusted")
-#define SLOPE                                                                                      \
-  {                                                                                                \
-    .key = "slope", .title = "slope", .meaning = "of the quantity by the number, SI units of both" \
-  }
 
 static const struct dea_result_column slope_columns[] = {
     VOLTAGE,
@@ -111,12 +96,12 @@ static const struct dea_result_column slope_columns[] = {
     DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity",
                       .meaning = "of load points, or of a monitor"),
     DEA_RESULT_COLUMN(VALUE, "value", "quantity's value", .meaning = "there"),
-    SLOPE,
+    DEA_BARE("slope", "slope", "of the quantity by the number, SI units of both"),
     DEA_BARE("elasticity", "per cent by one per cent",
              "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"),
     DEA_NUMBER_TOLERANCE,
     DEA_RESULT_COLUMN(VALUE, "change", "change by tolerance", .meaning = "of the quantity"),
-    MODE,
+    DEA_BARE("mode", "mode", "that a frequency is of, from 1, the lowest"),
     TIP_DEPTH,
     HELD_STRETCH,
     LOADED,
@@ -414,16 +399,17 @@ static dea_status find_slopes(struct dea_context *ctx, const struct dea_study_jo
                                           .design = job->result->design,
                                           .device = job->result->device,
                                           .voltage_V = stop->voltage_V,
-                                          .stretch = stop->stretch,
                                           .pressed = stop->is_pressed ? &stop->pressed : NULL,
                                           .numbers = stop->numbers,
                                           .number_count = stop->number_count,
-                                          .columns = columns,
-                                          .column_count = asked,
-                                          .modes = modes,
-                                          .monitors = stop->monitors,
-                                          .monitor_count = seen,
-                                          .motions = stop->motions};
+                                          .of = {.columns = columns,
+                                                 .column_count = asked,
+                                                 .modes = modes,
+                                                 .monitors = stop->monitors,
+                                                 .monitor_count = seen,
+                                                 .motions = stop->motions,
+                                                 .holds_stretch = stop->stretch > 0,
+                                                 .stretch = stop->stretch}};
   DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, slopes));
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     stop->slopes[i] = NAN;

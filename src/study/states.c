@@ -49,14 +49,12 @@ static const struct dea_field fields[] = {
                     .alias = "most", .min = 1, .max = 100, .default_text = "8"),
 };
 
-static const struct dea_record record = {
-    study_name,
-    "study of states, made when this section is there ({}) or with --study: the stable equilibria "
-    "of a slack film at voltages (3d)",
-    fields, DEA_COUNT(fields)};
-
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings)};
+    .record = {study_name,
+               "study of states, made when this section is there ({}) or with --study: the stable "
+               "equilibria of a slack film at voltages (3d)",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings)};
 
 // States -----------------------------------------------------------------------------------------
 
@@ -429,7 +427,7 @@ static dea_status append_state(struct search *s, size_t i, size_t *branches)
   }
   DEA_TRY(ctx,
           dea_study_add_point(ctx, &s->job, s->job.result->device, &state->point, &variant->curve));
-  return DEA_CHAIN(ctx, dea_variant_take_profile(ctx, &s->job, variant));
+  return DEA_CHAIN(ctx, dea_variant_add_profile(ctx, &s->job, variant));
 }
 
 enum { ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN };

@@ -129,7 +129,7 @@ static struct dea_location place_of(const struct dea_study *study, const struct 
 {
   const struct dea_node *compute = dea_node_find(dea_yaml_root(design->document), "compute");
   const struct dea_node *section =
-      study->keys != NULL ? dea_node_find(compute, study->keys->key) : NULL;
+      study->keys != NULL ? dea_node_find(compute, study->keys->record.name) : NULL;
   return section != NULL ? section->key_place : design->compute.models[0].location;
 }
 
@@ -245,9 +245,10 @@ dea_status dea_study_run_with(struct dea_context *ctx, const struct dea_model_ty
                               const char *const names[], size_t name_count,
                               const struct dea_study_services *services, struct dea_result *result)
 {
-  static const struct dea_study_services none = {0};
-  struct dea_study_job shared = {.type = type, .result = result, .services = none};
-  shared.services = services != NULL ? *services : none;
+  struct dea_study_job shared = {.type = type, .result = result};
+  if (services != NULL) {
+    shared.services = *services;
+  }
   const struct dea_study_job own = shared;
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
   struct outcome first = {.status = DEA_OK};

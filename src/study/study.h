@@ -101,13 +101,10 @@ dea_status dea_study_add_points(struct dea_context *ctx, const struct dea_study_
 /* The field of voltages that a study stops at, in members `voltages_V` and `voltage_count` of its
  * `struct settings`. */
 #define DEA_STUDY_STOPS_FIELD(absent, what, shown)                                                 \
-  {                                                                                                \
-    .key = "voltage", .kind = DEA_FIELD_NUMBER, .offset = offsetof(struct settings, voltages_V),   \
-    .unit = "V", .max = 1e6, .list_min = 1, .list_max = DEA_DESIGN_STOPS_MAX,                      \
-    .element_size = sizeof(struct dea_quantity),                                                   \
-    .count_offset = offsetof(struct settings, voltage_count), .absent_text = (absent),             \
-    .doc = (what), .example = (shown)                                                              \
-  }
+  DEA_NUMBER_ROW("voltage", offsetof(struct settings, voltages_V), "V", shown, what, .max = 1e6,   \
+                 .absent_text = absent,                                                            \
+                 DEA_LIST(1, DEA_DESIGN_STOPS_MAX, struct dea_quantity,                            \
+                          offsetof(struct settings, voltage_count)))
 /* Voltages that a study stops at: those of the design, or without any the quarters of the highest
  * of the sweep, with 0 V if that is wanted. Returns their number. */
 size_t dea_study_stops(const struct dea_design *design, const struct dea_quantity *given,

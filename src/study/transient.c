@@ -53,10 +53,6 @@ static const struct dea_field fields[] = {
         .min = 0, .max = 1, .default_text = "0.8"),
 };
 
-static const struct dea_record record = {
-    "transient", "study of what happens in time, made when there is a waveform (drive)", fields,
-    DEA_COUNT(fields)};
-
 static bool asked(const struct dea_design *design)
 {
   return design->drive.waveform != NULL || dea_parts_in_time(design->parts);
@@ -115,7 +111,10 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 }
 
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
+    .record = {"transient", "study of what happens in time, made when there is a waveform (drive)",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings),
+    .check = check};
 
 static const struct settings *settings_of(const struct dea_design *design)
 {

@@ -79,12 +79,6 @@ static const struct dea_field fields[] = {
                    .absent_text = "none"),
 };
 
-static const struct dea_record record = {
-    study_name,
-    "study of what uncertain numbers do to the curves, made of plane models where some are known, "
-    "of 3d when this section is there ({})",
-    fields, DEA_COUNT(fields)};
-
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_settings *given)
 {
@@ -98,7 +92,12 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 }
 
 static const struct dea_design_section section = {
-    .key = study_name, .record = &record, .size = sizeof(struct settings), .check = check};
+    .record = {study_name,
+               "study of what uncertain numbers do to the curves, made of plane models where some "
+               "are known, of 3d when this section is there ({})",
+               fields, DEA_COUNT(fields)},
+    .size = sizeof(struct settings),
+    .check = check};
 
 // What is uncertain -------------------------------------------------------------------------------
 

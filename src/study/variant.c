@@ -15,8 +15,8 @@ void dea_variant_set_size(const struct dea_study_job *job, double refinement,
   }
 }
 
-dea_status dea_variant_take_profile(struct dea_context *ctx, const struct dea_study_job *job,
-                                    struct dea_variant *variant)
+dea_status dea_variant_add_profile(struct dea_context *ctx, const struct dea_study_job *job,
+                                   struct dea_variant *variant)
 {
   const struct dea_curve *curve = &variant->curve;
   struct dea_profile profile;
@@ -34,7 +34,7 @@ static dea_status use_model(struct dea_context *ctx, const struct dea_study_job 
   dea_variant_set_size(job, run->settings.refinement, variant);
   DEA_TRY(ctx, dea_study_add_points(ctx, job, run->device, run->voltages_V, run->voltage_count,
                                     &variant->curve));
-  return DEA_CHAIN(ctx, dea_variant_take_profile(ctx, job, variant));
+  return DEA_CHAIN(ctx, dea_variant_add_profile(ctx, job, variant));
 }
 
 dea_status dea_variant_run(struct dea_context *ctx, const struct dea_study_job *job,

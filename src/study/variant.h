@@ -26,5 +26,5 @@ dea_status dea_variant_of_sweep(struct dea_context *ctx, const struct dea_study_
 void dea_variant_set_size(const struct dea_study_job *job, double refinement,
                           struct dea_variant *variant);
 /* Its profile at the last point of the variant, where it stands; nothing where it has none. */
-dea_status dea_variant_take_profile(struct dea_context *ctx, const struct dea_study_job *job,
-                                    struct dea_variant *variant);
+dea_status dea_variant_add_profile(struct dea_context *ctx, const struct dea_study_job *job,
+                                   struct dea_variant *variant);

@@ -660,8 +660,7 @@ static double slope_by(const char *text, const char *outcome)
                                           .voltage_V = 2e3,
                                           .numbers = numbers,
                                           .number_count = count,
-                                          .columns = &column,
-                                          .column_count = 1};
+                                          .of = {.columns = &column, .column_count = 1}};
   assert_int_equal(dea_design_gradient_find(ctx, &ask, slopes), DEA_OK);
   for (size_t i = 0; i < count; i++) {
     const size_t length = strlen(numbers[i].key), end = strlen(outcome);

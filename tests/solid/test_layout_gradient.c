@@ -232,11 +232,11 @@ static size_t check(struct at *at)
                                           .voltage_V = at->voltage_V,
                                           .numbers = numbers,
                                           .number_count = count,
-                                          .columns = columns,
-                                          .column_count = key_count(at),
-                                          .monitors = at->monitors,
-                                          .monitor_count = at->monitor_count,
-                                          .motions = at->asked ? at->motion : NULL};
+                                          .of = {.columns = columns,
+                                                 .column_count = key_count(at),
+                                                 .monitors = at->monitors,
+                                                 .monitor_count = at->monitor_count,
+                                                 .motions = at->asked ? at->motion : NULL}};
   const size_t width = key_count(at) + at->monitor_count;
   double *slopes = dea_alloc(ctx, count * width, sizeof *slopes);
   assert_non_null(slopes);

@@ -76,7 +76,7 @@ static void check_number(const struct dea_model_type *type, const struct dea_des
     const double value = number->value * (1 + shares[n]);
     const struct dea_device device =
         voltage ? *ask->device : changed(ask->design, ask->device, number, value);
-    solve(type, &device, voltage ? value : ask->voltage_V, ask->stretch, &moved[n], NULL);
+    solve(type, &device, voltage ? value : ask->voltage_V, ask->of.stretch, &moved[n], NULL);
   }
   for (int k = 0; k < KEYS; k++) {
     const int column = dea_point_column_find(keys[k]);
@@ -122,10 +122,11 @@ static void check(const char *model, double stretch, double floor)
                                     .design = design,
                                     .device = device,
                                     .voltage_V = 3e3,
-                                    .stretch = stretch,
                                     .numbers = numbers,
-                                    .columns = columns,
-                                    .column_count = KEYS};
+                                    .of = {.columns = columns,
+                                           .column_count = KEYS,
+                                           .holds_stretch = stretch > 0,
+                                           .stretch = stretch}};
   if (stretch > 0) { // more than the whole turns unstable only far beyond the limit point
     device->film = test_material("arruda-boyce", 15.36e3, 5.99, 0);
   }

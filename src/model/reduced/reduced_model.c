@@ -92,9 +92,7 @@ static dea_status report(struct dea_context *ctx, const struct dea_model *model)
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
-  static const struct dea_model_settings none;
   const struct dea_layout *l = device->layout;
-  settings = settings != NULL ? settings : &none;
   model->device = device;
   model->memory.ctx = ctx;
   if (settings->reduced.file != NULL) {
