@@ -14,10 +14,9 @@ static struct dea_context *ctx;
 
 static void run_fit(void *user)
 {
-  const struct dea_fit_options options = {false};
   struct dea_fit fit;
   (void)user;
-  bench_need(dea_fit_run(ctx, &file, series, TESTS, &options, &fit), ctx);
+  bench_need(dea_fit_run(ctx, &file, series, TESTS, false, &fit), ctx);
   dea_fit_free(&fit);
 }
 

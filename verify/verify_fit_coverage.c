@@ -178,10 +178,10 @@ static void try_sets(const struct subject *s, double rho, bool known, size_t set
   uint64_t seed = 7;
   make_data(s, &data);
   for (size_t k = 0; k < sets; k++) {
-    const struct dea_fit_options options = {.profile = 4 * k < sets};
+    const bool profiles = 4 * k < sets;
     struct dea_fit fit;
     add_noise(s, rho, known, &seed, &data);
-    verify_ok(ctx, dea_fit_run(ctx, &data.file, data.series, s->tests, &options, &fit));
+    verify_ok(ctx, dea_fit_run(ctx, &data.file, data.series, s->tests, profiles, &fit));
     for (size_t j = 0; j < s->params; j++) {
       const struct dea_fit_value *v = &fit.core.values[j];
       struct count *c = &counts[j];

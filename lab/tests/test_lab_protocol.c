@@ -108,7 +108,7 @@ TEST(test_waveform_alone_and_overrides)
   const struct dea_override set = {"waveform.amplitude", "4 kV"};
   assert_int_equal(protocol_read(in_folder("protocol.yaml"), &set, 1), DEA_OK);
   assert_close(dea_protocol_value(p, 0.05), 4000, 1e-12, 0);
-  assert_int_equal(p->steps[0].waveform->type == NULL, 0);
+  assert_int_equal(p->steps[0].waveform == NULL, 0);
 }
 
 #define SQUARE "waveform: {kind: square, high: 3 kV, frequency: 1 Hz}\n"

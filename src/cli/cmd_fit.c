@@ -388,8 +388,7 @@ static void print_life_fit(const struct dea_life_fit *fit)
 
 struct request {
   const char *file, *output;
-  bool json, force;
-  struct dea_fit_options options;
+  bool json, force, profile;
   struct dea_plot_format format;
 };
 
@@ -420,9 +419,8 @@ struct request {
     dea_fit_head_destroy(ctx, file);                                                               \
     return status;                                                                                 \
   }
-FIT_KIND(material, dea_fit_form, fit, dea_fit_file_run(ctx, file, &request->options, &fit))
-FIT_KIND(device, dea_device_form, device_fit,
-         dea_device_fit_run(ctx, file, &request->options, &fit))
+FIT_KIND(material, dea_fit_form, fit, dea_fit_file_run(ctx, file, request->profile, &fit))
+FIT_KIND(device, dea_device_form, device_fit, dea_device_fit_run(ctx, file, request->profile, &fit))
 FIT_KIND(breakdown, dea_breakdown_form, breakdown_fit, dea_breakdown_fit_run(ctx, file, &fit))
 FIT_KIND(life, dea_life_form, life_fit, dea_life_fit_run(ctx, file, &fit))
 
@@ -452,7 +450,7 @@ static const struct cli_option options[] = {
     CLI_ONE(CLI_DESIGN, "FIT", "fit file", file, "a fit file is needed", "one fit file at a time"),
     {"profile", 0, CLI_FLAG, NULL,
      "profile likelihood of every parameter, not only where the normal form is poor",
-     CLI_AT(options.profile)},
+     CLI_AT(profile)},
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .fit)"),
     CLI_FORCE_ROW('f', "replace an earlier fit in that folder"),
     CLI_FORMAT_ROW("formats of the figures with commas between, svg if not given"),

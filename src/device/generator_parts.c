@@ -185,7 +185,7 @@ static dea_status add_channels(struct maker *m)
     }
     l->channels[l->channel_count++] = (struct dea_layout_channel){
         keep(m, from->name.text), from->ratio.si, from->voltage_V.si, from->name.location,
-        from->waveform != NULL ? from->waveform->type->name : NULL};
+        from->waveform != NULL ? from->waveform->kind : NULL};
   }
   return dea_arena_status(&l->memory);
 }

@@ -25,10 +25,7 @@ static dea_status find_elastic(const struct dea_material *material, const struct
   for (size_t i = 0; i < coupon->rows; i++) {
     const double l = coupon->stretch[i];
     struct dea_plane plane;
-    dea_status status = dea_plane_elastic(material, l, dea_coupon_across(coupon->mode, l), &plane);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(dea_plane_elastic(material, l, dea_coupon_across(coupon->mode, l), &plane));
     stress_Pa[i] = plane.s1;
   }
   return DEA_OK;
@@ -76,9 +73,8 @@ dea_status dea_coupon_stress(const struct dea_material *material, const struct d
   if (material->law == NULL || material->law->anisotropic) {
     return DEA_E_ARGUMENT;
   }
-  const dea_status status = find_elastic(material, coupon, stress_Pa);
-  const bool timed = status == DEA_OK && coupon->node_count > 0;
-  for (size_t b = 0; b < material->branch_count && timed; b++) {
+  DEA_TRY_STATUS(find_elastic(material, coupon, stress_Pa));
+  for (size_t b = 0; b < material->branch_count && coupon->node_count > 0; b++) {
     const struct dea_branch *branch = &material->branches[b];
     double *share = shares->share + b * coupon->rows;
     if (branch->time_s != shares->time_s[b]) {
@@ -89,7 +85,7 @@ dea_status dea_coupon_stress(const struct dea_material *material, const struct d
       stress_Pa[i] += branch->modulus_Pa * share[i];
     }
   }
-  return status;
+  return DEA_OK;
 }
 
 /* ---- the way there ---- */

@@ -106,24 +106,17 @@ static double criterion(const struct dea_lsq_fit *fit, size_t free_count, bool s
                                2 * k * (k + 1) / (m - k - 1);
 }
 
-/* Fits with that many branches; out: freed by the caller after success. */
-static dea_status fit_branches(struct work *w, struct dea_fit_model *model, size_t count,
-                               const struct dea_quantity *times, struct dea_lsq_fit *out)
-{
-  const struct dea_fit_rows rows = all_rows(w->fit);
-  dea_fit_model_branches(model, count, w->from_s, w->to_s, times);
-  return dea_fit_model_solve(w->ctx, model, &rows, out);
-}
-
 /* As many branches as lower the criterion; stops after two that do not. */
 static dea_status find_branches(struct work *w, struct dea_fit_model *model)
 {
+  const struct dea_fit_rows rows = all_rows(w->fit);
   double best = INFINITY;
   size_t best_count = 0;
   for (size_t n = 0; n <= AUTO_BRANCHES_MAX && n <= best_count + 2; n++) {
     struct dea_fit_model trial = *model;
     struct dea_lsq_fit fit;
-    dea_status status = fit_branches(w, &trial, n, NULL, &fit);
+    dea_fit_model_branches(&trial, n, w->from_s, w->to_s, NULL);
+    dea_status status = dea_fit_model_solve(w->ctx, &trial, &rows, &fit);
     if (status == DEA_E_MEMORY) {
       return status;
     }
@@ -513,7 +506,7 @@ static dea_status fill_curves(struct work *w)
   return DEA_OK;
 }
 
-static dea_status run(struct work *w, const struct dea_fit_options *options)
+static dea_status run(struct work *w, bool profiles)
 {
   struct dea_fit *fit = w->fit;
   DEA_TRY(w->ctx, check_uncertainties(w));
@@ -523,7 +516,7 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   DEA_TRY(w->ctx, settle_open(w));
   dea_fit_model_material(&fit->model, fit->core.least_squares.p, NULL, &w->materials[fit->chosen]);
   DEA_TRY(w->ctx, check_rest(w, &w->materials[fit->chosen]));
-  DEA_TRY(w->ctx, fill_values(w, options->profile));
+  DEA_TRY(w->ctx, fill_values(w, profiles));
   DEA_TRY(w->ctx, fill_curves(w));
   dea_fit_identify_weak(&fit->core, "tests");
   dea_fit_identify_stability(fit);
@@ -534,23 +527,23 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
 }
 
 dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
-                       const struct dea_fit_series *series, size_t series_count,
-                       const struct dea_fit_options *options, struct dea_fit *fit)
+                       const struct dea_fit_series *series, size_t series_count, bool profiles,
+                       struct dea_fit *fit)
 {
   struct work w = {.ctx = ctx, .fit = fit};
   *fit = (struct dea_fit){
       .file = file, .series = series, .series_count = series_count, .memory = {.ctx = ctx}};
-  return dea_refuse_argument(ctx, file->tests[0].file.location, run(&w, options));
+  return dea_refuse_argument(ctx, file->tests[0].file.location, run(&w, profiles));
 }
 
-dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file,
-                            const struct dea_fit_options *options, struct dea_fit *fit)
+dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file, bool profiles,
+                            struct dea_fit *fit)
 {
   struct dea_arena tests = {.ctx = ctx};
   struct dea_fit_series *series;
   dea_status status = dea_fit_series_read(&tests, file, &series);
   status =
-      status == DEA_OK ? dea_fit_run(ctx, file, series, file->test_count, options, fit) : status;
+      status == DEA_OK ? dea_fit_run(ctx, file, series, file->test_count, profiles, fit) : status;
   fit->tests = tests;
   return DEA_CHAIN(ctx, status);
 }

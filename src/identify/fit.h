@@ -71,19 +71,16 @@ struct dea_fit {
   struct dea_arena memory, tests;          // tests: the series, where they were read from the file
 };
 
-struct dea_fit_options {
-  bool profile; // profiles of all parameters, not only where the normal form is poor
-};
-
-/* Fits; file and series: lent for as long as the result. Status as the model and the least squares
- * give it; DEA_E_DESIGN after findings. fit: freed by the caller, also after a failure. */
+/* Fits; file and series: lent for as long as the result. profiles: of all parameters, not only
+ * where the normal form is poor. Status as the model and the least squares give it; DEA_E_DESIGN
+ * after findings. fit: freed by the caller, also after a failure. */
 dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
-                       const struct dea_fit_series *series, size_t series_count,
-                       const struct dea_fit_options *options, struct dea_fit *fit);
+                       const struct dea_fit_series *series, size_t series_count, bool profiles,
+                       struct dea_fit *fit);
 /* The same of the tests that the file names, in CSV files from its folder; what is wrong with them
  * becomes findings with their places, DEA_E_IO then, or DEA_E_DESIGN. fit: zeroed before. */
-dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file,
-                            const struct dea_fit_options *options, struct dea_fit *fit);
+dea_status dea_fit_file_run(struct dea_context *ctx, const struct dea_fit_file *file, bool profiles,
+                            struct dea_fit *fit);
 void dea_fit_free(struct dea_fit *fit);
 
 // Parts -------------------------------------------------------------------------------------------

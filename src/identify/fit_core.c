@@ -101,7 +101,7 @@ void dea_fit_core_scatter(struct dea_fit_core *core)
   for (size_t i = 0; i < rows; i++) { // groups lie behind each other, priors behind them
     squares += core->least_squares.r[i] * core->least_squares.r[i];
   }
-  core->scatter *= core->scale_known ? 1 : sqrt(squares / (double)rows);
+  core->scatter *= core->scale_known ? 1 : sqrt(squares / (double)(rows > 0 ? rows : 1));
 }
 
 void dea_fit_core_free(struct dea_fit_core *core)

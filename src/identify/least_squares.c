@@ -22,44 +22,46 @@ static dea_status shifted(const struct dea_lsq_problem *problem, double *p, size
   return status;
 }
 
-/* dr/dp_j by one central difference. */
+/* dr/dp_j by one central difference; work: [2 x rows]. */
 static dea_status difference(const struct dea_lsq_problem *problem, double *p, size_t j, double h,
                              double *work, double *column)
 {
   const size_t m = problem->rows;
-  dea_status status = shifted(problem, p, j, h, work);
-  status = status == DEA_OK ? shifted(problem, p, j, -h, work + m) : status;
-  for (size_t i = 0; i < m && status == DEA_OK; i++) {
+  DEA_TRY_STATUS(shifted(problem, p, j, h, work));
+  DEA_TRY_STATUS(shifted(problem, p, j, -h, work + m));
+  for (size_t i = 0; i < m; i++) {
     column[i] = (work[i] - work[m + i]) / (2 * h);
   }
-  return status;
+  return DEA_OK;
+}
+
+/* The same by two of them, of fourth order. */
+static dea_status difference_twice(const struct dea_lsq_problem *problem, double *p, size_t j,
+                                   double h, double *work, double *column)
+{
+  const size_t m = problem->rows;
+  DEA_TRY_STATUS(shifted(problem, p, j, 2 * h, work));
+  DEA_TRY_STATUS(shifted(problem, p, j, -2 * h, work + m));
+  for (size_t i = 0; i < m; i++) {
+    column[i] = -(work[i] - work[m + i]) / (12 * h);
+  }
+  DEA_TRY_STATUS(shifted(problem, p, j, h, work));
+  DEA_TRY_STATUS(shifted(problem, p, j, -h, work + m));
+  for (size_t i = 0; i < m; i++) {
+    column[i] += 8 * (work[i] - work[m + i]) / (12 * h);
+  }
+  return DEA_OK;
 }
 
 /* dr/dp_j into column; work: [2 x rows]. */
 static dea_status differentiate(const struct dea_lsq_problem *problem, double *p, size_t j,
                                 double *work, double *column)
 {
-  const size_t m = problem->rows;
-  double *plus = work, *minus = work + m;
   const double share = problem->step > 0 ? problem->step : step_share;
   const double h = fmax(share * problem->param[j].scale, short_share * fabs(p[j]));
-  dea_status status;
-  if (problem->second_order) {
-    status = difference(problem, p, j, h, work, column);
-  } else {
-    status = shifted(problem, p, j, 2 * h, plus);
-    status = status == DEA_OK ? shifted(problem, p, j, -2 * h, minus) : status;
-  }
-  if (status == DEA_OK && !problem->second_order) {
-    for (size_t i = 0; i < m; i++) {
-      column[i] = -(plus[i] - minus[i]) / (12 * h);
-    }
-    status = shifted(problem, p, j, h, plus);
-    status = status == DEA_OK ? shifted(problem, p, j, -h, minus) : status;
-    for (size_t i = 0; i < m && status == DEA_OK; i++) {
-      column[i] += 8 * (plus[i] - minus[i]) / (12 * h);
-    }
-  }
+  const dea_status status = problem->second_order
+                                ? difference(problem, p, j, h, work, column)
+                                : difference_twice(problem, p, j, h, work, column);
   return status != DEA_E_DOMAIN // close to where the model ends
              ? status
              : difference(problem, p, j, short_share * problem->param[j].scale, work, column);

@@ -151,15 +151,6 @@ static bool maximise(const struct work *w, const struct kept *kept, struct point
 
 // What is known of it ----------------------------------------------------------------------------
 
-/* Parameters at a point: ln E_0 over the mean, b, n, p. */
-static void values_of(const struct kept *kept, const double c[N], double out[N])
-{
-  const double b = shape_at(kept, c);
-  for (int k = 0; k < N; k++) {
-    out[k] = kept->held[k] ? kept->value[k] : k == DEA_WEIBULL_SHAPE ? b : c[k] / b;
-  }
-}
-
 /* Covariance of ln E_0, b, n, p from the inverse of the information by the chain rule; the shape is
  * free. */
 static bool find_covariance(const struct kept *kept, const struct point *p,
@@ -247,26 +238,28 @@ static void fill(const struct work *w, const struct kept *kept, const struct poi
                  struct dea_weibull_fit *out)
 {
   static const double of_68 = 1, of_95 = 3.841458820694124;
-  double values[N];
-  values_of(kept, best->c, values);
+  const double b = shape_at(kept, best->c);
   out->log_likelihood = best->log_likelihood;
   out->broken = w->broken;
   for (size_t k = 0; k < N; k++) {
-    const bool is_field = k == DEA_WEIBULL_FIELD;
-    out->value[k] = is_field ? exp(values[k] + w->mean) : values[k];
+    const bool is_field = k == DEA_WEIBULL_FIELD; // as its logarithm over the mean
+    const double value = kept->held[k]            ? kept->value[k]
+                         : k == DEA_WEIBULL_SHAPE ? b
+                                                  : best->c[k] / b;
+    out->value[k] = is_field ? exp(value + w->mean) : value;
     out->std[k] = out->low[k] = out->high[k] = NAN;
     if (kept->held[k]) {
       continue;
     }
     const double std = sqrt(out->covariance[k][k]);
-    const double low = find_end(w, kept, best, k, values[k], std, of_68, -1);
-    const double high = find_end(w, kept, best, k, values[k], std, of_68, 1);
+    const double low = find_end(w, kept, best, k, value, std, of_68, -1);
+    const double high = find_end(w, kept, best, k, value, std, of_68, 1);
     out->std[k] = is_field ? std * out->value[k] : std;
     out->low[k] = is_field ? exp(low + w->mean) : low;
     out->high[k] = is_field ? exp(high + w->mean) : high;
     if (is_field) {
-      out->low_95 = exp(find_end(w, kept, best, k, values[k], 2 * std, of_95, -1) + w->mean);
-      out->high_95 = exp(find_end(w, kept, best, k, values[k], 2 * std, of_95, 1) + w->mean);
+      out->low_95 = exp(find_end(w, kept, best, k, value, 2 * std, of_95, -1) + w->mean);
+      out->high_95 = exp(find_end(w, kept, best, k, value, 2 * std, of_95, 1) + w->mean);
     }
   }
 }

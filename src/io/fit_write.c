@@ -115,18 +115,6 @@ static void add_advice_json(json_t *object, const struct dea_fit_core *core, con
   json_object_set_new(object, next_key, measurements);
 }
 
-/* Makes the folder and takes the files of an earlier fit out of it. */
-static dea_status create(struct dea_context *ctx, const struct dea_fit_folder *to, const char *yaml,
-                         const char *const figures[], size_t figure_count)
-{
-  const char *const files[] = {yaml, "fit.json", "fit.csv"};
-  for (size_t k = 0; k < 3 + figure_count; k++) {
-    DEA_TRY(ctx, dea_gnuplot_create_folders(ctx, to->path, k < 3 ? files[k] : figures[k - 3],
-                                            to->force));
-  }
-  return dea_folder_create(ctx, to->path);
-}
-
 /* Adds the rows of fit.csv, and NAME.yaml where a kind has one. */
 typedef dea_status fill_texts(struct dea_context *ctx, const void *fit, struct dea_text *csv,
                               struct dea_text *yaml);
@@ -143,7 +131,12 @@ static dea_status write_folder(struct dea_context *ctx, const struct dea_fit_fol
   void *before = dea_c_locale_enter();
   status = status == DEA_OK ? fill(ctx, fit, &csv, &yaml) : status;
   dea_c_locale_leave(before);
-  status = status == DEA_OK ? create(ctx, to, file, figures, figure_count) : status;
+  const char *const files[] = {file, "fit.json", "fit.csv"};
+  for (size_t k = 0; k < 3 + figure_count && status == DEA_OK; k++) { // of an earlier fit
+    status =
+        dea_gnuplot_create_folders(ctx, to->path, k < 3 ? files[k] : figures[k - 3], to->force);
+  }
+  status = status == DEA_OK ? dea_folder_create(ctx, to->path) : status;
   if (status == DEA_OK && (yaml.length > 0 || yaml.failed)) {
     status = dea_text_write(ctx, &yaml, to->path, file);
   }

@@ -19,6 +19,7 @@ struct reading {
   struct dea_device_fit *fit;
   const struct dea_device_curve_text *text;
   const struct dea_measurement *table;
+  int columns[DEA_DEVICE_QUANTITIES_MAX]; // of the quantities that are wanted
   char sha256[65];
 };
 
@@ -27,23 +28,12 @@ static bool is_in_time(const struct dea_device_curve *curve)
   return curve->text->kind.value == DEA_DEVICE_TRANSIENT;
 }
 
-/* Whether a quantity is wanted of a file; what is wanted but no quantity is a finding. */
-static bool is_wanted(const struct dea_context *ctx, const struct dea_device_curve_text *text,
-                      int column)
-{
-  for (size_t k = 0; k < text->quantity_count; k++) {
-    if (dea_column_find(ctx, text->quantities[k].text) == column) {
-      return true;
-    }
-  }
-  return text->quantity_count == 0;
-}
-
-static dea_status check_quantities(struct reading *r)
+/* Columns of the quantities that are wanted; what is none of the file is a finding. */
+static dea_status find_quantities(struct reading *r)
 {
   for (size_t k = 0; k < r->text->quantity_count; k++) {
     const struct dea_label *label = &r->text->quantities[k];
-    const int column = dea_column_find(r->ctx, label->text);
+    const int column = r->columns[k] = dea_column_find(r->ctx, label->text);
     if (column < 0) {
       char hint[DEA_HINT_SIZE];
       DEA_TRY(r->ctx, dea_column_hint(r->ctx, label->text, NULL, hint));
@@ -166,13 +156,13 @@ static dea_status read_table(struct reading *r, const char *path)
   r->table = table;
   const bool in_time = r->text->kind.value == DEA_DEVICE_TRANSIENT; // has the waveform's voltage
   dea_status status = in_time ? DEA_OK : dea_measurement_fold(r->ctx, table);
-  status = status == DEA_OK ? check_quantities(r) : status;
+  status = status == DEA_OK ? find_quantities(r) : status;
   size_t taken = 0;
   for (int c = 0; c < dea_column_count(r->ctx) && status == DEA_OK; c++) {
     const bool axis = c == dea_point_column_find("voltage_V") ||
                       c == dea_point_column_find("time_s") ||
                       c == dea_point_column_find("tip_depth_m");
-    if (!axis && is_wanted(r->ctx, r->text, c) &&
+    if (!axis && dea_column_is_wanted(c, r->columns, r->text->quantity_count) &&
         dea_points_have(table->curve.points, table->curve.count, c)) {
       status = add_curve(r, c);
       taken++;
@@ -234,17 +224,14 @@ static bool is_held(const struct dea_device_curve *curve)
   return curve->text->kind.value == DEA_DEVICE_FORCE;
 }
 
-static double depth_of(const struct dea_device_curve *curve, size_t i)
-{
-  return is_held(curve) && !isnan(curve->depth_m[i]) ? curve->depth_m[i] : 0;
-}
-
 /* The group that a row belongs to, a new one where there is none; NULL: there are too many. */
 static struct dea_device_group *find_group(struct dea_device_model *model,
                                            const struct dea_device_curve *curve, size_t i)
 {
-  const struct dea_device_group wanted = {
-      .held = is_held(curve), .in_time = is_in_time(curve), .depth_m = depth_of(curve, i)};
+  const bool deep = is_held(curve) && !isnan(curve->depth_m[i]);
+  const struct dea_device_group wanted = {.held = is_held(curve),
+                                          .in_time = is_in_time(curve),
+                                          .depth_m = deep ? curve->depth_m[i] : 0};
   for (size_t g = 0; g < model->group_count; g++) {
     const struct dea_device_group *group = &model->groups[g];
     if (group->held == wanted.held && group->in_time == wanted.in_time &&

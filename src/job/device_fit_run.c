@@ -20,7 +20,7 @@ static const double scatter_guess =
 struct work {
   struct dea_context *ctx;
   struct dea_device_fit *fit;
-  const struct dea_fit_options *options;
+  bool profiles; // of all parameters
   struct dea_design *design;
   struct dea_device *device;
   char *path, *bytes; // of the design
@@ -192,10 +192,7 @@ static dea_status residual(void *user, const double *p, double *r)
   const struct dea_device_fit *fit = w->fit;
   const struct dea_load_point *points;
   size_t n = 0;
-  dea_status status = dea_device_model_points(&w->model, p, &points);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_device_model_points(&w->model, p, &points));
   for (size_t c = 0; c < fit->curve_count; c++) {
     const struct dea_device_curve *curve = &fit->curves[c];
     for (size_t i = 0; i < curve->rows; i++) {
@@ -640,8 +637,8 @@ static dea_status finish(struct work *w)
   struct dea_device_fit *fit = w->fit;
   struct slopes slopes;
   DEA_TRY(w->ctx, find_slopes(w, &slopes)); // those of the last derivatives
-  DEA_TRY(w->ctx, dea_fit_core_values(w->ctx, &w->problem, w->model.type->load == NULL,
-                                      w->options->profile, &fit->core));
+  DEA_TRY(w->ctx, dea_fit_core_values(w->ctx, &w->problem, w->model.type->load == NULL, w->profiles,
+                                      &fit->core));
   for (size_t c = 0, g = 0; c < fit->curve_count; c++) {
     fill_curve(w, &slopes, &fit->curves[c]);
     if (count_used(&fit->curves[c]) > 0) {
@@ -667,9 +664,9 @@ static dea_status run(struct work *w)
 }
 
 dea_status dea_device_fit_run(struct dea_context *ctx, const struct dea_device_file *file,
-                              const struct dea_fit_options *options, struct dea_device_fit *fit)
+                              bool profiles, struct dea_device_fit *fit)
 {
-  struct work w = {.ctx = ctx, .fit = fit, .options = options};
+  struct work w = {.ctx = ctx, .fit = fit, .profiles = profiles};
   *fit = (struct dea_device_fit){.file = file, .design = {.ctx = ctx}, .memory = {.ctx = ctx}};
   dea_status status = run(&w);
   dea_device_model_end(&w.model);

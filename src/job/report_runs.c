@@ -78,13 +78,6 @@ static dea_status read_findings(struct dea_context *ctx, struct dea_report_run *
   return DEA_OK;
 }
 
-static void name_run(struct dea_report_run *out)
-{
-  const char *file = out->run->design_file, *slash = strrchr(file, '/');
-  file = out->run->title[0] != '\0' ? out->run->title : slash != NULL ? slash + 1 : file;
-  snprintf(out->title, sizeof out->title, "%.*s", (int)sizeof out->title - 1, file);
-}
-
 /* Reads a run, its design, its notes. */
 static dea_status open_run(struct dea_context *ctx, const char *path, int number,
                            struct dea_report_run *out)
@@ -92,7 +85,8 @@ static dea_status open_run(struct dea_context *ctx, const char *path, int number
   *out = (struct dea_report_run){.path = path, .number = number};
   dea_finding_clear(ctx);
   DEA_TRY(ctx, dea_run_read(ctx, path, &out->run));
-  name_run(out);
+  snprintf(out->title, sizeof out->title, "%.*s", (int)sizeof out->title - 1,
+           out->run->title[0] != '\0' ? out->run->title : dea_path_name(out->run->design_file));
   dea_status status = dea_design_of_run(ctx, out->run, &out->design, &out->device);
   if (status == DEA_E_MEMORY) {
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -204,12 +198,11 @@ static dea_status read_reduced(struct dea_context *ctx, struct dea_report_run *i
 dea_status dea_report_runs_open(struct dea_context *ctx, const char *const paths[], size_t count,
                                 struct dea_report_run runs[])
 {
-  dea_status status = DEA_OK;
-  for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    status = open_run(ctx, paths[i], (int)i + 1, &runs[i]);
-    status = status == DEA_OK ? read_reduced(ctx, &runs[i]) : status;
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(ctx, open_run(ctx, paths[i], (int)i + 1, &runs[i]));
+    DEA_TRY(ctx, read_reduced(ctx, &runs[i]));
   }
-  return status;
+  return DEA_OK;
 }
 
 void dea_report_runs_close(struct dea_context *ctx, struct dea_report_run runs[], size_t count)

@@ -191,11 +191,6 @@ void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *
   dea_free(ctx, entry);
 }
 
-const struct dea_set_head *dea_set_head_at(const void *sets, size_t size, size_t i)
-{
-  return (const void *)((const char *)sets + i * size);
-}
-
 /* Sets of one kind, and which of them is wanted. */
 struct sets {
   const char *what; // "law set"

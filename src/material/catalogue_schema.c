@@ -385,6 +385,11 @@ static dea_status check_shift(const struct dea_reader *reader, const struct dea_
                           "ends less than c2 below it");
 }
 
+const struct dea_set_head *dea_set_head_at(const void *sets, size_t size, size_t i)
+{
+  return (const void *)((const char *)sets + i * size);
+}
+
 /* What holds for sets of all kinds: of two with one name a design could never choose the second.
  * sets: [i + 1] of `size` bytes, which begin with their heads. */
 static dea_status check_set(const struct dea_reader *reader, const void *sets, size_t size,

@@ -9,6 +9,8 @@
  * s            mean in-plane stretch sqrt(l1 l2)                    1 */
 #include "material/plane.h"
 
+#include "base/context.h"
+
 static dea_status plane_invariants(const struct dea_material *material, dea_scalar l1,
                                    dea_scalar l2, struct dea_plane *out)
 {
@@ -23,10 +25,7 @@ static dea_status plane_invariants(const struct dea_material *material, dea_scal
   const dea_scalar I4 = law->anisotropic ? A * a + B * b : 1.0;
 
   struct dea_law_energy e;
-  const dea_status status = law->invariants(material->param, I1, I2, I4, &e);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(law->invariants(material->param, I1, I2, I4, &e));
 
   // Derivatives of the invariants by l1 and l2.
   const dea_scalar u1 = 2.0 * (l1 - c * i1), u2 = 2.0 * (l2 - c * i2);
@@ -58,11 +57,7 @@ static dea_status plane_principal(const struct dea_material *material, dea_scala
   const dea_scalar l[3] = {l1, l2, 1.0 / (l1 * l2)};
   dea_scalar w[3], w1[3], w2[3];
   for (int i = 0; i < 3; i++) {
-    const dea_status status =
-        material->law->principal(material->param, l[i], &w[i], &w1[i], &w2[i]);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(material->law->principal(material->param, l[i], &w[i], &w1[i], &w2[i]));
   }
   const dea_scalar t1 = l[2] / l1, t2 = l[2] / l2; // -dl3/dl1, -dl3/dl2
   out->W = w[0] + w[1] + w[2];
@@ -83,12 +78,9 @@ dea_status DEA_NAME(dea_plane_elastic)(const struct dea_material *material, dea_
   if (!(DEA_RE(lambda1) > 0.0 && DEA_RE(lambda2) > 0.0)) { // also when one is not a number
     return DEA_E_DOMAIN;
   }
-  const dea_status status = material->law->invariants != NULL
-                                ? plane_invariants(material, lambda1, lambda2, out)
-                                : plane_principal(material, lambda1, lambda2, out);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(material->law->invariants != NULL
+                     ? plane_invariants(material, lambda1, lambda2, out)
+                     : plane_principal(material, lambda1, lambda2, out));
   // Stretches so extreme that a power of them overflows.
   return isfinite(DEA_RE(out->W + out->k11 + out->k12 + out->k22)) ? DEA_OK : DEA_E_DOMAIN;
 }

@@ -10,6 +10,8 @@
  * N[.][a]  their unit eigenvectors (columns)                      1 */
 #include "material/point.h"
 
+#include "base/context.h"
+
 enum { PAIR_COUNT = 6 };
 
 /* Symmetric index pairs 11 22 33 23 13 12, and the pair of two indices. */
@@ -62,10 +64,7 @@ static dea_status from_invariants(const struct dea_law *law, const double *param
     }
   }
   struct dea_law_energy e;
-  const dea_status status = law->invariants(param, I1, 0.5 * (I1 * I1 - CC), I4, &e);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(law->invariants(param, I1, 0.5 * (I1 * I1 - CC), I4, &e));
   out->W = e.W;
   for (int p = 0; p < PAIR_COUNT; p++) {
     out->S[p] = 2.0 * (e.W1 * one[p] + e.W2 * B[p] + e.W4 * M[p]);
@@ -142,10 +141,7 @@ static dea_status principal_stress(const struct dea_law *law, const double *para
   }
   const dea_scalar l = sqrt(x);
   dea_scalar w1, w2;
-  const dea_status status = law->principal(param, l, w, &w1, &w2);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(law->principal(param, l, w, &w1, &w2));
   *S = w1 / l;
   *dS = (w2 - *S) / (2.0 * x);
   return DEA_OK;
@@ -169,11 +165,8 @@ static dea_status pair_modulus(const struct dea_law *law, const double *param, d
   *modulus = 0.0;
   for (int i = 0; i < 3; i++) {
     dea_scalar w, S, dS;
-    const dea_status status =
-        principal_stress(law, param, 0.5 * (xa + xb) + 0.5 * node[i] * (xb - xa), &w, &S, &dS);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(
+        principal_stress(law, param, 0.5 * (xa + xb) + 0.5 * node[i] * (xb - xa), &w, &S, &dS));
     *modulus += weight[i] * dS;
   }
   return DEA_OK;
@@ -190,19 +183,13 @@ static dea_status from_principal(const struct dea_law *law, const double *param,
   out->W = 0.0;
   for (int a = 0; a < 3; a++) {
     dea_scalar w, dS;
-    const dea_status status = principal_stress(law, param, C[a][a], &w, &S[a], &dS);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(principal_stress(law, param, C[a][a], &w, &S[a], &dS));
     out->W += w;
     modulus[a] = 2.0 * dS;
   }
   for (int p = 3; p < PAIR_COUNT && tangent; p++) {
     const int a = pair_first[p], b = pair_second[p];
-    const dea_status status = pair_modulus(law, param, C[a][a], C[b][b], S[a], S[b], &modulus[p]);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(pair_modulus(law, param, C[a][a], C[b][b], S[a], S[b], &modulus[p]));
     modulus[p] *= 4.0;
   }
   for (int p = 0; p < PAIR_COUNT; p++) {
@@ -289,10 +276,7 @@ static dea_status from_volume(const struct dea_law *law, const double *param, co
   const dea_scalar excess = trace + 0.5 * (trace * trace - crossed) + cofactors(D, cof);
   const dea_scalar J = cofactors(F, cof);
   struct dea_law_volume e;
-  const dea_status status = law->compressible(param, 2.0 * trace + square, excess, &e);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(law->compressible(param, 2.0 * trace + square, excess, &e));
   out->W = e.W;
   for (int a = 0; a < 9; a++) {
     out->P[a] = 2.0 * e.W1 * F[a] + e.WJ * cof[a];
@@ -314,12 +298,8 @@ static dea_status from_referential(const struct dea_law *law, const double *para
   dea_scalar C[3][3];
   right_cauchy_green(F, C);
   struct referential ref;
-  const dea_status status = law->invariants != NULL
-                                ? from_invariants(law, param, C, fibre, tangent, &ref)
-                                : from_principal(law, param, C, tangent, &ref);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(law->invariants != NULL ? from_invariants(law, param, C, fibre, tangent, &ref)
+                                         : from_principal(law, param, C, tangent, &ref));
   out->W = ref.W;
   push_stress(F, &ref, out->P);
   if (tangent) {
@@ -337,12 +317,8 @@ static dea_status evaluate(const struct dea_law *law, const double *param, const
   if (!(DEA_RE(determinant(F)) > 0.0)) { // also when it is not a number
     return DEA_E_DOMAIN;
   }
-  const dea_status status = law->compressible != NULL
-                                ? from_volume(law, param, F, tangent, out)
-                                : from_referential(law, param, F, fibre, tangent, out);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(law->compressible != NULL ? from_volume(law, param, F, tangent, out)
+                                           : from_referential(law, param, F, fibre, tangent, out));
   // Entries of F that are infinite, or so large that a power of them overflows.
   dea_scalar sum = out->W;
   for (int i = 0; i < 9; i++) {

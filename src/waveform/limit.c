@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-static const struct dea_wave_type limited = {.name = "limited"};
-
 /* Where the supply is, and what it made so far. */
 struct limiter {
   struct dea_waveform *out;
@@ -63,7 +61,7 @@ dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform
   p.out = dea_alloc(ctx, 1, sizeof *p.out);
   DEA_TRY_MEMORY(p.out != NULL);
   *p.out = (struct dea_waveform){
-      .type = &limited, .ctx = ctx, .end_s = until_s, .longest_step_s = INFINITY};
+      .kind = "limited", .ctx = ctx, .end_s = until_s, .longest_step_s = INFINITY};
   dea_wave_open(p.out, 0, 1 / until_s, 1);
   go_to(&p, 0, 0);
   play(&p, waveform, slew_V_per_s, until_s);

@@ -1,6 +1,6 @@
-/* Waveforms of straight pieces, and what is asked of every waveform. Knot k of cycle n of a block
- * is at start + (n + phase)/f + offset: one formula everywhere, so that a corner found is the very
- * time at which the value bends. */
+/* Waveforms of straight pieces and of sines, and what is asked of every waveform. Knot k of cycle n
+ * of a block is at start + (n + phase)/f + offset: one formula everywhere, so that a corner found
+ * is the very time at which the value bends. */
 #include "waveform/wave_make.h"
 
 #include <math.h>
@@ -86,10 +86,58 @@ static double next_knot(const struct dea_waveform *w, double time)
   return b + 1 < last ? time_at(w, b + 1, 0, 0) : INFINITY;
 }
 
+// Sines ------------------------------------------------------------------------------------------
+
+static const double two_pi = 6.28318530717958647692;
+
+/* sin of 2 pi times a number of cycles, which may be large. */
+static double sine_of(double cycles)
+{
+  return sin(two_pi * (cycles - floor(cycles))); // exact where the cycles are whole
+}
+
+double dea_wave_cycles(const struct dea_wave_sine *p, double t)
+{
+  double T = p->sweep_s;
+  if (!p->logarithmic) {
+    return p->from_Hz * t + (p->to_Hz - p->from_Hz) * t * t / (2 * T);
+  }
+  double rate = log(p->to_Hz / p->from_Hz);
+  return p->from_Hz * T / rate * expm1(rate * t / T);
+}
+
+static double sine_value(const struct dea_wave_sine *p, double t)
+{
+  double burst = p->bursts > 0 ? fmin(floor(t / p->period_s), p->bursts - 1) : 0;
+  double cycles = dea_wave_cycles(p, t - burst * p->period_s);
+  return p->bursts > 0 && cycles >= p->cycles
+             ? p->mean_V
+             : p->mean_V + p->amplitude_V * sine_of(cycles + p->phase);
+}
+
+/* Whether a number of cycles with this fraction lies within so many. */
+static bool passes(double fraction, double cycles)
+{
+  return floor(cycles - fraction) >= ceil(-fraction);
+}
+
+/* Of its cycles from phase 0: those with another phase are whole. */
+static void sine_extent(const struct dea_wave_sine *p, struct dea_wave_extent *out)
+{
+  double to = sine_of(p->cycles), amplitude_V = p->amplitude_V;
+  double top = passes(0.25, p->cycles) ? 1 : fmax(0, to);
+  double bottom = passes(0.75, p->cycles) ? -1 : fmin(0, to);
+  *out = (struct dea_wave_extent){p->mean_V + fmin(amplitude_V * top, amplitude_V * bottom),
+                                  p->mean_V + fmax(amplitude_V * top, amplitude_V * bottom),
+                                  two_pi * fabs(amplitude_V) * fmax(p->from_Hz, p->to_Hz)};
+}
+
+// All --------------------------------------------------------------------------------------------
+
 static double value_of(const struct dea_waveform *w, double time, bool before)
 {
   double at = fmin(fmax(time, 0), w->end_s);
-  return w->type->value != NULL ? w->type->value(w, at) : piece_value(w, at, before && at >= time);
+  return w->sine.cycles > 0 ? sine_value(&w->sine, at) : piece_value(w, at, before && at >= time);
 }
 
 double dea_waveform_value(const struct dea_waveform *waveform, double time_s)
@@ -129,8 +177,8 @@ static void piece_extent(const struct dea_waveform *w, struct dea_wave_extent *o
 
 void dea_waveform_extent(const struct dea_waveform *waveform, struct dea_wave_extent *out)
 {
-  if (waveform->type->extent != NULL) {
-    waveform->type->extent(waveform, out);
+  if (waveform->sine.cycles > 0) {
+    sine_extent(&waveform->sine, out);
   } else {
     piece_extent(waveform, out);
   }
@@ -139,8 +187,12 @@ void dea_waveform_extent(const struct dea_waveform *waveform, struct dea_wave_ex
 bool dea_waveform_cycle(const struct dea_waveform *waveform, size_t number,
                         struct dea_wave_cycle *out)
 {
-  if (waveform->type->cycle != NULL) {
-    return waveform->type->cycle(waveform, number, out);
+  const struct dea_wave_sine *p = &waveform->sine;
+  if (waveform->block_count == 0) { // of a sweep none is like another
+    out->start_s = (double)number / p->from_Hz;
+    out->end_s = (double)(number + 1) / p->from_Hz;
+    out->level_V = p->mean_V + copysign(p->amplitude_V, p->mean_V);
+    return !p->sweeps && (double)number < p->cycles;
   }
   for (size_t i = 0; i < waveform->block_count; i++) {
     const struct dea_wave_block *b = &waveform->blocks[i];

@@ -223,36 +223,18 @@ static dea_status build_staircase(const struct raw *raw, struct dea_waveform *ou
 
 // Sines ------------------------------------------------------------------------------------------
 
-enum { MEAN, AMPLITUDE, FREQUENCY, NUMBER, PHASE, PERIOD = PHASE, BURSTS };
-enum { TO = NUMBER, DURATION, LOGARITHMIC }; // of a chirp
-
-/* sin of 2 pi times a number of cycles, which may be large. */
-static double sine_of(double cycles)
+/* What sine, burst and chirp have in common. */
+static void start_sine(const struct raw *raw, double from_Hz, double to_Hz, double sweep_s,
+                       struct dea_waveform *out)
 {
-  return sin(two_pi * (cycles - floor(cycles))); // exact where the cycles are whole
-}
-
-/* Whether a number of cycles with this fraction lies within so many. */
-static bool passes(double fraction, double cycles)
-{
-  return floor(cycles - fraction) >= ceil(-fraction);
-}
-
-/* Extent over a number of cycles from phase 0, at a frequency of at most highest_Hz. */
-static void sine_extent(const double *p, double cycles, double highest_Hz,
-                        struct dea_wave_extent *out)
-{
-  double to = sine_of(cycles), amplitude_V = p[AMPLITUDE];
-  double top = passes(0.25, cycles) ? 1 : fmax(0, to);
-  double bottom = passes(0.75, cycles) ? -1 : fmin(0, to);
-  *out = (struct dea_wave_extent){p[MEAN] + fmin(amplitude_V * top, amplitude_V * bottom),
-                                  p[MEAN] + fmax(amplitude_V * top, amplitude_V * bottom),
-                                  two_pi * fabs(amplitude_V) * highest_Hz};
-}
-
-static void whole_extent(const struct dea_waveform *w, struct dea_wave_extent *out)
-{
-  sine_extent(w->numbers, w->numbers[NUMBER], w->numbers[FREQUENCY], out);
+  out->sine = (struct dea_wave_sine){.mean_V = raw->mean_V.si,
+                                     .amplitude_V = raw->amplitude_V.si,
+                                     .cycles = raw->cycles.si,
+                                     .from_Hz = from_Hz,
+                                     .to_Hz = to_Hz,
+                                     .sweep_s = sweep_s};
+  out->end_s = sweep_s;
+  out->longest_step_s = 0.05 / fmax(from_Hz, to_Hz);
 }
 
 /* Mean + amplitude sin(2 pi (f t + phase)). */
@@ -266,43 +248,14 @@ static const struct dea_field sine_fields[] = {
     CYCLES(cycles, "cycles", "number of cycles", "10"),
 };
 
-/* What sine, burst and chirp have in common. */
-static void start_sine(const struct raw *raw, double highest_Hz, struct dea_waveform *out)
-{
-  out->numbers[MEAN] = raw->mean_V.si;
-  out->numbers[AMPLITUDE] = raw->amplitude_V.si;
-  out->numbers[FREQUENCY] = raw->frequency_Hz.si;
-  out->numbers[NUMBER] = raw->cycles.si;
-  out->longest_step_s = 0.05 / highest_Hz;
-}
-
 static dea_status build_sine(const struct raw *raw, struct dea_waveform *out)
 {
-  start_sine(raw, raw->frequency_Hz.si, out);
-  out->numbers[PHASE] = raw->phase_rad.si / two_pi;
-  out->end_s = raw->cycles.si / raw->frequency_Hz.si;
+  const double f = raw->frequency_Hz.si;
+  start_sine(raw, f, f, raw->cycles.si / f, out);
+  out->sine.phase = raw->phase_rad.si / two_pi;
   return DEA_OK;
 }
 
-static double sine_value(const struct dea_waveform *w, double time_s)
-{
-  const double *p = w->numbers;
-  return p[MEAN] + p[AMPLITUDE] * sine_of(p[FREQUENCY] * time_s + p[PHASE]);
-}
-
-static bool sine_cycle(const struct dea_waveform *w, size_t number, struct dea_wave_cycle *out)
-{
-  const double *p = w->numbers;
-  out->start_s = (double)number / p[FREQUENCY];
-  out->end_s = (double)(number + 1) / p[FREQUENCY];
-  out->level_V = p[MEAN] + copysign(p[AMPLITUDE], p[MEAN]);
-  return (double)number < p[NUMBER];
-}
-
-/* Frequency from one value to another. Cycles until t:
- *
- *   linear       f_0 t + (f_1 - f_0) t^2/(2 T)
- *   logarithmic  f_0 T/ln(f_1/f_0) ((f_1/f_0)^(t/T) - 1) */
 static const char *const spacings[] = {"linear", "logarithmic", NULL};
 
 static const struct dea_field chirp_fields[] = {
@@ -318,37 +271,12 @@ static const struct dea_field chirp_fields[] = {
 
 static dea_status build_chirp(const struct raw *raw, struct dea_waveform *out)
 {
-  start_sine(raw, fmax(raw->from_Hz.si, raw->to_Hz.si), out);
-  out->numbers[FREQUENCY] = raw->from_Hz.si;
-  out->numbers[TO] = raw->to_Hz.si;
-  out->numbers[DURATION] = out->end_s = raw->duration_s.si;
-  out->numbers[LOGARITHMIC] = raw->spacing.value == 1 && raw->from_Hz.si != raw->to_Hz.si;
+  const double from_Hz = raw->from_Hz.si, to_Hz = raw->to_Hz.si;
+  start_sine(raw, from_Hz, to_Hz, raw->duration_s.si, out);
+  out->sine.sweeps = true;
+  out->sine.logarithmic = raw->spacing.value == 1 && from_Hz != to_Hz;
+  out->sine.cycles = dea_wave_cycles(&out->sine, raw->duration_s.si);
   return DEA_OK;
-}
-
-static double chirp_cycles(const double *p, double t)
-{
-  double T = p[DURATION], rate = log(p[TO] / p[FREQUENCY]);
-  return p[LOGARITHMIC] != 0 ? p[FREQUENCY] * T / rate * expm1(rate * t / T)
-                             : p[FREQUENCY] * t + (p[TO] - p[FREQUENCY]) * t * t / (2 * T);
-}
-
-static double chirp_value(const struct dea_waveform *w, double t)
-{
-  const double *p = w->numbers;
-  return p[MEAN] + p[AMPLITUDE] * sine_of(chirp_cycles(p, t));
-}
-
-static void chirp_extent(const struct dea_waveform *w, struct dea_wave_extent *out)
-{
-  const double *p = w->numbers;
-  sine_extent(p, chirp_cycles(p, p[DURATION]), fmax(p[FREQUENCY], p[TO]), out);
-}
-
-static bool chirp_cycle(const struct dea_waveform *w, size_t number, struct dea_wave_cycle *out)
-{
-  (void)w, (void)number, (void)out;
-  return false; // none is like another
 }
 
 static const struct dea_field burst_fields[] = {
@@ -363,29 +291,20 @@ static const struct dea_field burst_fields[] = {
 
 static dea_status build_burst(const struct raw *raw, struct dea_waveform *out)
 {
-  double *p = out->numbers;
-  start_sine(raw, raw->frequency_Hz.si, out);
-  p[PERIOD] = raw->period_s.si;
-  p[BURSTS] = raw->bursts.si;
-  if (p[NUMBER] / p[FREQUENCY] > p[PERIOD]) {
+  const double f = raw->frequency_Hz.si, burst_s = raw->cycles.si / f, mean_V = raw->mean_V.si;
+  start_sine(raw, f, f, burst_s, out);
+  out->sine.bursts = raw->bursts.si;
+  out->sine.period_s = raw->period_s.si;
+  if (burst_s > raw->period_s.si) {
     return dea_finding_add(raw->ctx, DEA_ERROR, raw->period_s.location,
-                           "period: %g s is shorter than a burst, %g s", p[PERIOD],
-                           p[NUMBER] / p[FREQUENCY]);
+                           "period: %g s is shorter than a burst, %g s", raw->period_s.si, burst_s);
   }
-  // Blocks of two knots each burst mark its ends, where the curve bends; the value is below.
-  dea_wave_open(out, 0, 1 / p[PERIOD], (size_t)p[BURSTS]);
-  dea_wave_add(out, 0, 0, p[MEAN] + copysign(p[AMPLITUDE], p[MEAN]));
-  dea_wave_add(out, 0, p[NUMBER] / p[FREQUENCY], p[MEAN]);
-  out->end_s = p[BURSTS] * p[PERIOD];
+  // Blocks of two knots each burst mark its ends, where the curve bends.
+  dea_wave_open(out, 0, 1 / raw->period_s.si, (size_t)raw->bursts.si);
+  dea_wave_add(out, 0, 0, mean_V + copysign(raw->amplitude_V.si, mean_V));
+  dea_wave_add(out, 0, burst_s, mean_V);
+  out->end_s = raw->bursts.si * raw->period_s.si;
   return DEA_OK;
-}
-
-static double burst_value(const struct dea_waveform *w, double t)
-{
-  const double *p = w->numbers;
-  double number = fmin(floor(t / p[PERIOD]), p[BURSTS] - 1);
-  double cycles = (t - number * p[PERIOD]) * p[FREQUENCY];
-  return cycles < p[NUMBER] ? p[MEAN] + p[AMPLITUDE] * sine_of(cycles) : p[MEAN];
 }
 
 // A file -----------------------------------------------------------------------------------------
@@ -473,39 +392,37 @@ static dea_status build_table(const struct raw *raw, struct dea_waveform *out)
 
 // All --------------------------------------------------------------------------------------------
 
-/* In the order in which they are offered: name, meaning, and of a curved one its functions. */
+/* In the order in which they are offered: name, meaning. */
 #define KINDS(X)                                                                                   \
-  X(constant, "one voltage", NULL, NULL, NULL)                                                     \
-  X(step, "from one voltage to another", NULL, NULL, NULL)                                         \
-  X(ramp, "evenly from one voltage to another", NULL, NULL, NULL)                                  \
-  X(square, "pulses of equal height", NULL, NULL, NULL)                                            \
-  X(sine, "a sine about a mean", sine_value, whole_extent, sine_cycle)                             \
-  X(triangle, "up and down evenly", NULL, NULL, NULL)                                              \
-  X(chirp, "a sine of changing frequency", chirp_value, chirp_extent, chirp_cycle)                 \
-  X(burst, "some cycles of a sine, a pause, again", burst_value, whole_extent, NULL)               \
-  X(staircase, "pulses at one voltage after the other", NULL, NULL, NULL)                          \
-  X(table, "times and voltages from a CSV file", NULL, NULL, NULL)
+  X(constant, "one voltage")                                                                       \
+  X(step, "from one voltage to another")                                                           \
+  X(ramp, "evenly from one voltage to another")                                                    \
+  X(square, "pulses of equal height")                                                              \
+  X(sine, "a sine about a mean")                                                                   \
+  X(triangle, "up and down evenly")                                                                \
+  X(chirp, "a sine of changing frequency")                                                         \
+  X(burst, "some cycles of a sine, a pause, again")                                                \
+  X(staircase, "pulses at one voltage after the other")                                            \
+  X(table, "times and voltages from a CSV file")
 
-#define WAVE_RECORD(name, meaning, value, extent, cycle)                                           \
+#define WAVE_RECORD(name, meaning)                                                                 \
   static const struct dea_record name##_record = {#name, meaning, name##_fields,                   \
                                                   COUNT(name##_fields)};
 KINDS(WAVE_RECORD)
 #undef WAVE_RECORD
 
 static const struct kind {
-  struct dea_wave_type type;
-  const struct dea_record *record; // its keys, "kind" among them
-  /* Makes the waveform of what was read (zeroed but for `type`). What is wrong becomes findings. */
+  const struct dea_record *record; // its keys, "kind" among them; with its name
+  /* Makes the waveform of what was read (zeroed but for `kind`). What is wrong becomes findings. */
   dea_status (*build)(const struct raw *raw, struct dea_waveform *out);
 } kinds[] = {
-#define WAVE_KIND(name, meaning, value, extent, cycle)                                             \
-  {{#name, value, extent, cycle}, &name##_record, build_##name},
+#define WAVE_KIND(name, meaning) {&name##_record, build_##name},
     KINDS(WAVE_KIND)
 #undef WAVE_KIND
 };
 
 const struct dea_record *const dea_wave_records[] = {
-#define WAVE_ADDRESS(name, meaning, value, extent, cycle) &name##_record,
+#define WAVE_ADDRESS(name, meaning) &name##_record,
     KINDS(WAVE_ADDRESS)
 #undef WAVE_ADDRESS
         NULL};
@@ -518,7 +435,7 @@ dea_status dea_waveform_read(const struct dea_reader *reader, const struct dea_n
   size_t index, errors = dea_finding_count(ctx, DEA_ERROR);
   *out = NULL;
   for (size_t i = 0; i < COUNT(kinds); i++) {
-    names[i] = kinds[i].type.name;
+    names[i] = kinds[i].record->name;
   }
   DEA_TRY(ctx, dea_schema_kind(reader, node, "a waveform", names, COUNT(kinds), &index));
   if (index == COUNT(kinds)) {
@@ -528,8 +445,7 @@ dea_status dea_waveform_read(const struct dea_reader *reader, const struct dea_n
   struct dea_waveform *waveform = dea_alloc(ctx, 1, sizeof *waveform);
   dea_status status = raw != NULL && waveform != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
-    *waveform =
-        (struct dea_waveform){.type = &kinds[index].type, .ctx = ctx, .longest_step_s = INFINITY};
+    *waveform = (struct dea_waveform){.kind = names[index], .ctx = ctx, .longest_step_s = INFINITY};
     raw->ctx = ctx;
     raw->beside = beside;
     status = dea_schema_read(reader, kinds[index].record, node, path, raw);

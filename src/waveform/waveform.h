@@ -34,26 +34,26 @@ struct dea_wave_extent {
   double slope_V_per_s; // fastest change between jumps, >= 0; of a part of a cycle at most that
 };
 
-/* A kind of waveform. The functions are NULL for one that is made of straight pieces. */
-struct dea_wave_type {
-  const char *name; // "square"
-  double (*value)(const struct dea_waveform *waveform, double time_s);
-  void (*extent)(const struct dea_waveform *waveform, struct dea_wave_extent *out);
-  bool (*cycle)(const struct dea_waveform *waveform, size_t number, struct dea_wave_cycle *out);
+/* A sine about a mean: from its start on, or in bursts that begin every period_s, between which the
+ * mean stays. Its frequency may go from one value to another. */
+struct dea_wave_sine {
+  double mean_V, amplitude_V, phase; // phase at the start, in cycles
+  double cycles;                     // of all of it or of a burst; 0: it is no sine
+  double from_Hz, to_Hz, sweep_s;    // alike but for a sweep, which takes sweep_s > 0
+  bool sweeps, logarithmic;
+  double bursts, period_s; // bursts 0: none
 };
 
-enum { DEA_WAVE_NUMBERS_MAX = 8 };
-
 struct dea_waveform {
-  const struct dea_wave_type *type;
+  const char *kind;        // "square"
   struct dea_context *ctx; // that it was made with; for dea_waveform_destroy
   double end_s;            // from here on the last value stays
-  double longest_step_s;   // that still follows a curved one; INFINITY between straight corners
+  double longest_step_s;   // that still follows a sine; INFINITY between straight corners
   struct dea_wave_knot *knots;
   struct dea_wave_block *blocks;
   size_t knot_count, block_count, knot_capacity, block_capacity;
-  bool failed;                          // while it is made: memory was short
-  double numbers[DEA_WAVE_NUMBERS_MAX]; // of a curved kind
+  bool failed; // while it is made: memory was short
+  struct dea_wave_sine sine;
 };
 
 /* Reads the section `node` with the table of its kind. Errors are findings, *out is then NULL and

@@ -23,7 +23,6 @@ static dea_status fit(const char *model, const char *parameters, const char *cur
                       struct dea_device_file **file, struct dea_device_fit **out)
 {
   static char text[4096];
-  const struct dea_fit_options options = {false};
   snprintf(text, sizeof text,
            "dea_fit: 1\nname: mine\ndesign: design.yaml\nmodel: %s\nparameters:\n%scurves:\n%s",
            model, parameters, curves);
@@ -34,7 +33,7 @@ static dea_status fit(const char *model, const char *parameters, const char *cur
   void *read;
   assert_int_equal(dea_fit_head_read(ctx, in_folder("fit.yaml"), &dea_device_form, &read), DEA_OK);
   *file = read;
-  return dea_device_fit_run(ctx, *file, &options, *out);
+  return dea_device_fit_run(ctx, *file, false, *out);
 }
 
 static void end(struct dea_device_file *file, struct dea_device_fit *found)

@@ -160,9 +160,7 @@ static struct dea_fit_series *add_relaxation(size_t rows, double stretch, double
 static struct dea_fit *run_trial(void)
 {
   static struct dea_fit fit;
-  const struct dea_fit_options options = {false};
-  if (dea_fit_run(ctx, &trial.file, trial.series, trial.file.test_count, &options, &fit) !=
-      DEA_OK) {
+  if (dea_fit_run(ctx, &trial.file, trial.series, trial.file.test_count, false, &fit) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   return &fit;
@@ -383,9 +381,8 @@ TEST(test_silicones)
         series->stress_Pa[r] += 3.46 * 2e-3 * series->stress_Pa[series->rows - 1] *
                                 ((double)(seed >> 11) / 9007199254740992.0 - 0.5);
       }
-      const struct dea_fit_options options = {false};
       struct dea_fit fit;
-      const dea_status status = dea_fit_run(ctx, &trial.file, trial.series, 1, &options, &fit);
+      const dea_status status = dea_fit_run(ctx, &trial.file, trial.series, 1, false, &fit);
       if (status != DEA_OK &&
           (k > 0 || strstr(dea_context_message(ctx), "the shear modulus at rest would") == NULL)) {
         fail_msg("%s by %s: %s", names[i], laws[k], dea_context_message(ctx));

@@ -51,7 +51,7 @@ static void print_sequence(const struct dea_protocol *protocol)
     const struct dea_protocol_step *step = &protocol->steps[i];
     double length_s = step->repeat.si * step->waveform->end_s;
     printf("  %zu  %-16s  %-10s  %g kV to %g kV, %zu cycle%s in %g s", i + 1, step->label.text,
-           step->waveform->type->name, 1e-3 * step->lowest_V, 1e-3 * step->highest_V,
+           step->waveform->kind, 1e-3 * step->lowest_V, 1e-3 * step->highest_V,
            (size_t)step->repeat.si * step->cycles,
            (size_t)step->repeat.si * step->cycles == 1 ? "" : "s", length_s);
     if (step->pause_s.si > 0) {

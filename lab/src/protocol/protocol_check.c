@@ -123,7 +123,7 @@ static void find_slopes(const struct dea_protocol *protocol, struct slopes *out)
       add_jump(out, i, start_V - end_V);
     }
     add_slope(out, i, w);
-    if (w->type->value != NULL) {
+    if (w->sine.cycles > 0) {
       add_cycle(out, i, 20 * w->longest_step_s);
     } else {
       check_pieces(out, i, w);
