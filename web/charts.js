@@ -11,15 +11,13 @@
     const share = (at - from) / (to - from);
     return log ? low * (high / low) ** share : low + share * (high - low);
   };
-  const upward = (panel, series) => (series.r ? panel.y2 : panel.y);
 
   // Point of a series at x, on the branch that is nearest to y: interpolated, except of markers.
   const pointAt = (panel, series, x, y) => {
     const [xs, ys] = series.v;
-    const up = upward(panel, series);
     let best = null;
     const offer = (px, py, reach) => {
-      const away = Math.abs(place(up, py) - y) + reach;
+      const away = Math.abs(place(panel.y, py) - y) + reach;
       if (best === null || away < best.away) {
         best = { x: px, y: py, away };
       }
@@ -70,7 +68,7 @@
           if (found === null) {
             continue;
           }
-          const up = place(upward(panel, series), found.y);
+          const up = place(panel.y, found.y);
           if (up <= panel.y[2] + 1 && up >= panel.y[3] - 1) {
             layer.append(dea.svg('circle', { cx: place(panel.x, found.x), cy: up, r: 4.5, class: `c${series.c}` }));
           }

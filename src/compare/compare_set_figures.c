@@ -326,7 +326,7 @@ static dea_status fill_pair(struct dea_set_figures *f, const struct dea_set_curv
   plot->second_height = 0.45;
   DEA_TRY(ctx, fill_both(f, c, m, beside, top));
   DEA_TRY(ctx, add(f, low, &difference, 1e-3, m->quantity->factor, &look));
-  dea_panel_mark(low, false, 0.0, "");
+  dea_panel_mark(low, 0.0, "");
   dea_figure_label(m->quantity, top->y_label, sizeof top->y_label);
   snprintf(low->y_label, sizeof low->y_label, "Difference");
   dea_panel_voltage_axis(top);

@@ -273,10 +273,9 @@ static dea_status write_copy(struct file *file, const struct dea_workshop *works
     }
     dea_free(ctx, memory);
   }
-  for (size_t i = 0; i < part->text_count; i++) {
-    const struct dea_part_text *text = &part->text[i];
-    write_words(file, DEA_LAYER_MARK, at[0] + text->x_m, at[1] + text->y_m, text->height_m, true,
-                text->text);
+  if (part->word != NULL) {
+    write_words(file, DEA_LAYER_MARK, at[0], at[1] + part->word_y_m, part->word_height_m, true,
+                part->word);
   }
   return DEA_OK;
 }
@@ -286,7 +285,7 @@ void dea_sheet_labels(const struct dea_workshop *workshop, size_t index, struct 
   const struct dea_part *part = &workshop->part[index];
   int copies = workshop->layout[index].count;
   dea_text_add(out, "%.80s: %s; %s; lengths of the %s film in mm; ",
-               dea_path_name(workshop->plan.design->file), part->title, part->seen,
+               dea_path_name(workshop->plan.design->file), part->title, dea_part_seen(part),
                dea_part_film_name(part));
   if (part->paper) {
     dea_text_add(out, "not to be cut");

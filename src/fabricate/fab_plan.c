@@ -145,21 +145,6 @@ static dea_status build_hole(struct dea_context *ctx, struct dea_fab_plan *plan)
   return dea_fab_unite(ctx, &all, &plan->hole);
 }
 
-/* Whether a region is one circle. */
-static bool is_circle(const struct dea_region *region)
-{
-  bool round = region->contour_count == 1;
-  const struct dea_contour contour =
-      round ? dea_region_contour(region, 0) : (struct dea_contour){0};
-  for (size_t i = 0; round && i < dea_contour_pieces(&contour); i++) {
-    const struct dea_piece piece = dea_contour_piece(&contour, i);
-    const struct dea_piece first = dea_contour_piece(&contour, 0);
-    round = piece.arc && hypot(piece.centre[0] - first.centre[0],
-                               piece.centre[1] - first.centre[1]) <= 1e-9 * first.radius_m;
-  }
-  return round;
-}
-
 /* Half way between an edge and the outer edge of the frame, from a place in a direction. */
 static void place_on_frame(const struct dea_fab_plan *plan, const double edge_m[2],
                            const double from[2], double angle_rad, double out[2])
@@ -205,7 +190,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_fab_plan *plan)
   const struct dea_fabrication *f = &plan->design->fabrication;
   const struct dea_layout *layout = plan->layout;
   const double l = plan->stretch = largest_stretch(layout);
-  double box[4];
+  double box[4], centre[2], radius;
   plan->kerf_m = f->kerf_m.si;
   plan->feature_m = f->minimum_feature_m.si;
   plan->copies = (int)f->copies.si;
@@ -213,14 +198,15 @@ static dea_status fill(struct dea_context *ctx, struct dea_fab_plan *plan)
     plan->stretched |= dea_ply_is_stretched(&layout->plies[i]);
   }
   DEA_TRY(ctx, build_hole(ctx, plan));
-  plan->round = plan->held && is_circle(&plan->hole);
+  if (plan->held && plan->hole.contour_count == 1) {
+    const struct dea_contour edge = dea_region_contour(&plan->hole, 0);
+    plan->round = dea_contour_is_circle(&edge, centre, &radius);
+  }
   dea_layout_box_m(layout, box);
   for (size_t i = 0; i < layout->body_count; i++) {
     dea_region_grow_box(&layout->regions[layout->bodies[i].region].region, box);
   }
-  if (plan->held) {
-    dea_region_grow_box(&plan->hole, box);
-  }
+  dea_region_grow_box(&plan->hole, box);
   for (int k = 0; k < 2; k++) {
     plan->centre_m[k] = 0.5 * (box[k] + box[2 + k]);
     plan->opening_m[k] = 0.5 * (box[2 + k] - box[k]) + (plan->held ? 0 : f->frame_gap_m.si);
@@ -233,6 +219,62 @@ static dea_status fill(struct dea_context *ctx, struct dea_fab_plan *plan)
   plan->mark_m = 0.5 * dea_length_stretched_m(&f->mark_diameter, l);
   plan->grid_m = dea_length_stretched_m(&f->grid_spacing, l);
   plan->cross_m = fmin(0.1 * plan->grid_m, 0.5e-3 * l);
+  return DEA_OK;
+}
+
+static void add_box(const struct dea_fab_plan *plan, const double half_m[2],
+                    struct dea_location location, struct dea_region *out)
+{
+  const double *c = plan->centre_m;
+  struct dea_vertex v[4];
+  for (int k = 0; k < 4; k++) {
+    v[k] = (struct dea_vertex){c[0] + (k == 0 || k == 3 ? half_m[0] : -half_m[0]),
+                               c[1] + (k < 2 ? half_m[1] : -half_m[1]), 0, location};
+  }
+  dea_region_add(out, v, 4);
+}
+
+/* Round as the opening, or a rectangle. */
+static void add_edge(const struct dea_fab_plan *plan, const double half_m[2],
+                     struct dea_location location, struct dea_region *out)
+{
+  if (plan->round) {
+    dea_region_add_circle(out, plan->centre_m[0], plan->centre_m[1], half_m[0], false, location);
+  } else {
+    add_box(plan, half_m, location, out);
+  }
+}
+
+/* What is cut and marked beside the layout's own shapes. */
+static dea_status build_edges(struct dea_context *ctx, struct dea_fab_plan *plan)
+{
+  const struct dea_fabrication *f = &plan->design->fabrication;
+  const struct dea_location edge = f->blank.margin.length.location;
+  const double *c = plan->centre_m;
+  struct dea_region *const all[] = {&plan->hole,  &plan->frame, &plan->film,   &plan->sheet,
+                                    &plan->marks, &plan->pads,  &plan->windows};
+  add_edge(plan, plan->frame_m, f->ring.width_m.location, &plan->frame);
+  add_edge(plan, plan->blank_m, edge, &plan->film);
+  add_box(plan, plan->blank_m, edge, &plan->sheet);
+  if (!plan->held) {
+    add_box(plan, plan->opening_m, f->frame_gap_m.location, &plan->hole);
+  }
+  for (int m = 0; m < DEA_FAB_MARKS; m++) {
+    dea_region_add_circle(&plan->marks, c[0] + plan->mark_at_m[m][0], c[1] + plan->mark_at_m[m][1],
+                          plan->mark_m, false, f->mark_diameter.length.location);
+  }
+  for (size_t i = 0; i < plan->pad_count; i++) {
+    const double x = c[0] + plan->pad[i].at_m[0], y = c[1] + plan->pad[i].at_m[1];
+    dea_region_add_circle(&plan->pads, x, y, plan->pad_m, false,
+                          f->leads.pad_diameter.length.location);
+    if (plan->window_m > 0 && !plan->layout->electrodes[plan->pad[i].electrode].top) {
+      dea_region_add_circle(&plan->windows, x, y, plan->window_m, false,
+                            f->ring.contact_window_m.location);
+    }
+  }
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+    DEA_TRY(ctx, dea_region_status(all[i]));
+  }
   return DEA_OK;
 }
 
@@ -616,11 +658,18 @@ dea_status dea_fab_plan_build(struct dea_context *ctx, const struct dea_design *
                                .layout = device->layout,
                                .memory = {.ctx = ctx},
                                .hole = {.ctx = ctx},
+                               .frame = {.ctx = ctx},
+                               .film = {.ctx = ctx},
+                               .sheet = {.ctx = ctx},
+                               .marks = {.ctx = ctx},
+                               .pads = {.ctx = ctx},
+                               .windows = {.ctx = ctx},
                                .bonded = {.ctx = ctx}};
   DEA_TRY(ctx, fill(ctx, out));
   fill_tabs(out);
   DEA_TRY(ctx, place_pads(ctx, out));
   place_marks(out);
+  DEA_TRY(ctx, build_edges(ctx, out));
   DEA_TRY(ctx, check_cutter(ctx, out));
   DEA_TRY(ctx, check_pads(ctx, out));
   DEA_TRY(ctx, check_tabs(ctx, out));
@@ -644,9 +693,10 @@ void dea_fab_plan_free(struct dea_fab_plan *plan)
       dea_region_free(&plan->inked[i]);
     }
   }
-  if (plan->hole.ctx != NULL) {
-    dea_region_free(&plan->hole);
-    dea_region_free(&plan->bonded);
+  struct dea_region *const all[] = {&plan->hole,  &plan->frame, &plan->film,    &plan->sheet,
+                                    &plan->marks, &plan->pads,  &plan->windows, &plan->bonded};
+  for (size_t i = 0; i < sizeof all / sizeof all[0] && plan->hole.ctx != NULL; i++) {
+    dea_region_free(all[i]);
   }
   dea_arena_free(&plan->memory);
 }

@@ -20,16 +20,15 @@ struct dea_fab_plan {
   struct dea_arena memory;
   double kerf_m, feature_m; // where they are cut: not stretched
   int copies;
-  double stretch;         // the largest pre-stretch, of two axes their mean: of lengths that the
-                          // design gives unstretched
-  double centre_m[2];     // the origin, in the coordinates of the layout
-  bool stretched;         // some ply has a pre-stretch
-  bool held;              // some edge is held all around, so that the frame stays
-  bool round;             // that edge is a circle: the frame is a ring, and films are cut round
-  struct dea_region hole; // of the frame where it is held: in the layout's coordinates; owned
-  double opening_m[2];    // half sides of the box around the frame's opening, or radius twice
-  double frame_m[2];      // of its outer edge
-  double blank_m[2];      // of the film as it is cut
+  double stretch;      // the largest pre-stretch, of two axes their mean: of lengths that the
+                       // design gives unstretched
+  double centre_m[2];  // the origin, in the coordinates of the layout
+  bool stretched;      // some ply has a pre-stretch
+  bool held;           // some edge is held all around, so that the frame stays
+  bool round;          // that edge is a circle: the frame is a ring, and films are cut round
+  double opening_m[2]; // half sides of the box around the frame's opening, or radius twice
+  double frame_m[2];   // of its outer edge
+  double blank_m[2];   // of the film as it is cut
 
   double lead_width_m, pad_m, window_m; // width of a lead; radii of pads, and of holes over those
                                         // below, 0: none
@@ -41,11 +40,20 @@ struct dea_fab_plan {
   double piece_outer_m, piece_end_m; // distance of its pieces' outer ends, with their anchors
   double holder_m;                   // inner radius of their holder; without one that of the frame
   double tab_width_m;
-  struct dea_region bonded; // its pieces with their anchors; owned
 
   double mark_m; // radius of a mark
   double mark_at_m[DEA_FAB_MARKS][2];
   double grid_m, cross_m; // spacing of the grid; half a cross
+
+  // in the layout's coordinates; owned
+  struct dea_region hole;    // the frame's opening
+  struct dea_region frame;   // its outer edge
+  struct dea_region film;    // the edge of a film as it is cut
+  struct dea_region sheet;   // the box around that
+  struct dea_region marks;   // circles
+  struct dea_region pads;    // circles, in the order of pad
+  struct dea_region windows; // holes over the pads below
+  struct dea_region bonded;  // pieces on tabs with their anchors
 };
 
 /* Fills it and checks what does not go together, each finding at its value: look at

@@ -87,7 +87,6 @@ static struct sheet start(struct dea_workshop *w, enum dea_part_kind kind, size_
   *s.part = (struct dea_part){.memory = &w->memory,
                               .kind = kind,
                               .of = of,
-                              .seen = below ? "seen from below" : "seen from above",
                               .state = DEA_STRETCHED,
                               .flat = !w->plan.stretched,
                               .quantity = 1,
@@ -201,51 +200,6 @@ static void add_region(const struct sheet *s, const struct dea_region *region,
   }
 }
 
-/* A rectangle about the plan's origin, of half sides in the flat film. */
-static void add_box(const struct sheet *s, enum dea_layer layer, const double half_m[2],
-                    struct dea_location location)
-{
-  const double *c = s->w->plan.centre_m;
-  struct dea_vertex v[4] = {{0}};
-  for (int k = 0; k < 4; k++) {
-    v[k].x_m = c[0] + (k == 0 || k == 3 ? half_m[0] : -half_m[0]);
-    v[k].y_m = c[1] + (k < 2 ? half_m[1] : -half_m[1]);
-    v[k].location = location;
-  }
-  const struct dea_contour box = {v, 4, true};
-  add_contour(s, &box, layer);
-}
-
-static void add_circle(const struct sheet *s, enum dea_layer layer, const double at_m[2],
-                       double radius_m, struct dea_location location)
-{
-  const double *c = s->w->plan.centre_m, x = c[0] + at_m[0], y = c[1] + at_m[1];
-  const struct dea_vertex v[2] = {{x + radius_m, y, 1, location}, {x - radius_m, y, 1, location}};
-  const struct dea_contour circle = {v, 2, true};
-  add_contour(s, &circle, layer);
-}
-
-/* An edge of the frame, or of the film as it is cut: round as the opening, or a rectangle. */
-static void add_edge(const struct sheet *s, enum dea_layer layer, const double half_m[2],
-                     struct dea_location location)
-{
-  const double centre[2] = {0, 0};
-  if (s->w->plan.round) {
-    add_circle(s, layer, centre, half_m[0], location);
-  } else {
-    add_box(s, layer, half_m, location);
-  }
-}
-
-static void add_marks(const struct sheet *s, enum dea_layer layer)
-{
-  const struct dea_fab_plan *plan = &s->w->plan;
-  for (int k = 0; k < DEA_FAB_MARKS; k++) {
-    add_circle(s, layer, plan->mark_at_m[k], plan->mark_m,
-               plan->design->fabrication.mark_diameter.length.location);
-  }
-}
-
 /* Whether a cross of the grid at a place of the flat film would lie on something else. */
 static bool is_taken(const struct dea_workshop *w, double x, double y)
 {
@@ -301,6 +255,13 @@ static void add_grid(const struct sheet *s)
 
 // Dimensions -------------------------------------------------------------------------------------
 
+/* Two sides of a box. */
+static void measure_sides(struct dea_part *part, const double box[4], const char *what)
+{
+  dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[2], box[1], what);
+  dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[0], box[3], what);
+}
+
 /* Dimensions of contours from `first` on: diameters of circles, two sides of the boxes around
  * others; of several alike the first one. */
 static void measure(struct dea_part *part, size_t first, enum dea_layer layer, const char *what)
@@ -308,11 +269,10 @@ static void measure(struct dea_part *part, size_t first, enum dea_layer layer, c
   double seen[6][2];
   size_t count = 0;
   for (size_t i = first; i < part->contour_count && count < 6; i++) {
-    const struct dea_contour contour = part->contour[i].path;
     double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    dea_contour_grow_box(&contour, box);
+    dea_contour_grow_box(&part->contour[i].path, box);
     const double side[2] = {box[2] - box[0], box[3] - box[1]};
-    bool known = part->contour[i].layer != layer || !contour.closed;
+    bool known = part->contour[i].layer != layer || !part->contour[i].path.closed;
     for (size_t k = 0; k < count && !known; k++) {
       known = fabs(seen[k][0] - side[0]) < 1e-7 && fabs(seen[k][1] - side[1]) < 1e-7;
     }
@@ -320,13 +280,11 @@ static void measure(struct dea_part *part, size_t first, enum dea_layer layer, c
       continue;
     }
     memcpy(seen[count++], side, sizeof side);
-    struct dea_location at = contour.vertex[0].location;
     double y = 0.5 * (box[1] + box[3]);
     if (part->contour[i].circle) {
-      dea_part_measure(part, DEA_MEASURE_DIAMETER, box[0], y, box[2], y, what, at);
+      dea_part_measure(part, DEA_MEASURE_DIAMETER, box[0], y, box[2], y, what);
     } else {
-      dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[2], box[1], what, at);
-      dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[0], box[3], what, at);
+      measure_sides(part, box, what);
     }
   }
 }
@@ -340,36 +298,33 @@ static void measure_and_drop(struct dea_part *part, size_t first, const char *wh
 
 /* A length in the flat film, from the plan's origin. */
 static void measure_length(const struct sheet *s, double x0, double y0, double x1, double y1,
-                           const char *what, struct dea_location location)
+                           const char *what)
 {
   const double *c = s->w->plan.centre_m;
   const double from[2] = {c[0] + x0, c[1] + y0}, to[2] = {c[0] + x1, c[1] + y1};
   double a[2], b[2];
   place(s, from, a);
   place(s, to, b);
-  dea_part_measure(s->part, DEA_MEASURE_LENGTH, a[0], a[1], b[0], b[1], what, location);
+  dea_part_measure(s->part, DEA_MEASURE_LENGTH, a[0], a[1], b[0], b[1], what);
 }
 
 static void measure_grid(const struct sheet *s, double share)
 {
   const struct dea_fab_plan *plan = &s->w->plan;
   const double y = -share * plan->blank_m[1];
-  measure_length(s, -plan->grid_m, y, 0, y, "grid",
-                 plan->design->fabrication.grid_spacing.length.location);
+  measure_length(s, -plan->grid_m, y, 0, y, "grid");
 }
 
 /* Sides of the box around all that is cut. */
 static void measure_box(struct dea_part *part, const char *what)
 {
-  const struct dea_location nowhere = {0};
   double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
   for (size_t i = 0; i < part->contour_count; i++) {
     if (part->contour[i].layer == DEA_LAYER_CUT_OUTER) {
       dea_contour_grow_box(&part->contour[i].path, box);
     }
   }
-  dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[2], box[1], what, nowhere);
-  dea_part_measure(part, DEA_MEASURE_LENGTH, box[0], box[1], box[0], box[3], what, nowhere);
+  measure_sides(part, box, what);
 }
 
 // Parts ------------------------------------------------------------------------------------------
@@ -377,13 +332,12 @@ static void measure_box(struct dea_part *part, const char *what)
 static void add_blank(struct dea_workshop *w, size_t ply)
 {
   const struct dea_layout *l = w->plan.layout;
-  const struct dea_fabrication *f = &w->plan.design->fabrication;
   struct sheet s = start(w, DEA_PART_BLANK, ply, "Film '%.60s'%s", l->plies[ply].name,
                          dea_ply_is_stretched(&l->plies[ply]) ? " before it is stretched" : "");
   s.part->quantity = dea_ply_count_like(l, ply);
   add_grid(&s);
-  add_marks(&s, DEA_LAYER_MARK);
-  add_edge(&s, DEA_LAYER_CUT_OUTER, w->plan.blank_m, f->blank.margin.length.location);
+  add_region(&s, &w->plan.marks, DEA_LAYER_MARK, DEA_LAYER_MARK);
+  add_region(&s, &w->plan.film, DEA_LAYER_CUT_OUTER, DEA_LAYER_CUT_INNER);
   measure(s.part, 0, DEA_LAYER_CUT_OUTER, "film");
   measure_grid(&s, 0.86);
 }
@@ -411,7 +365,6 @@ static dea_status gather(struct dea_context *ctx, const struct dea_fab_plan *pla
 static void measure_ink(const struct sheet *s, size_t ply, bool top)
 {
   const struct dea_fab_plan *plan = &s->w->plan;
-  const struct dea_fabrication *f = &plan->design->fabrication;
   const size_t first = s->part->contour_count;
   for (size_t i = 0; i < s->layout->electrode_count; i++) {
     const struct dea_layout_electrode *e = &s->layout->electrodes[i];
@@ -428,8 +381,9 @@ static void measure_ink(const struct sheet *s, size_t ply, bool top)
     if (!lies_on(e, ply, top)) {
       continue;
     }
-    measure_length(s, x + v, y - u, x - v, y + u, "lead", f->leads.width.length.location);
-    add_circle(s, DEA_LAYER_NOTE, at, plan->pad_m, f->leads.pad_diameter.length.location);
+    measure_length(s, x + v, y - u, x - v, y + u, "lead");
+    const struct dea_contour circle = dea_region_contour(&plan->pads, i);
+    add_contour(s, &circle, DEA_LAYER_NOTE);
     measure_and_drop(s->part, first, "pad");
     return;
   }
@@ -439,7 +393,6 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
 {
   const struct dea_layout *l = w->plan.layout;
   struct dea_context *ctx = w->memory.ctx;
-  struct dea_location edge = w->plan.design->fabrication.blank.margin.length.location;
   struct dea_region openings = {.ctx = ctx};
   dea_status status = gather(ctx, &w->plan, ply, top, &openings);
   if (status != DEA_OK) {
@@ -453,13 +406,14 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
   size_t pieces = dea_part_pieces(s.part);
   measure_ink(&s, ply, top);
   measure(s.part, 0, DEA_LAYER_CUT_OUTER, "loose piece");
-  add_marks(&s, DEA_LAYER_CUT_INNER);
-  add_box(&s, DEA_LAYER_CUT_OUTER, w->plan.blank_m, edge);
+  add_region(&s, &w->plan.marks, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
+  add_region(&s, &w->plan.sheet, DEA_LAYER_CUT_OUTER, DEA_LAYER_CUT_INNER);
   measure_box(s.part, "stencil");
   double box[4];
   dea_part_box(s.part, box);
-  double height = fmin(2e-3, 0.06 * fmin(box[2], box[3]));
-  dea_part_write(s.part, 0, 0.94 * box[1], height, "%s", top ? "TOP" : "BOTTOM");
+  s.part->word = top ? "TOP" : "BOTTOM";
+  s.part->word_y_m = 0.94 * box[1];
+  s.part->word_height_m = fmin(2e-3, 0.06 * fmin(box[2], box[3]));
   dea_region_free(&openings);
   if (pieces > 0) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, l->plies[ply].location,
@@ -473,13 +427,12 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
 
 static void add_template(struct dea_workshop *w)
 {
-  const struct dea_fabrication *f = &w->plan.design->fabrication;
   struct sheet s = start(w, DEA_PART_TEMPLATE, 0, "Template of the flat device, for paper");
   const struct dea_layout *l = s.layout;
   const enum dea_layer mark = DEA_LAYER_MARK;
   s.part->paper = true;
   add_grid(&s);
-  add_marks(&s, mark);
+  add_region(&s, &w->plan.marks, mark, mark);
   for (size_t i = l->electrode_count; i-- > 0;) {
     if (dea_face_like(l, l->electrodes[i].ply, l->electrodes[i].top) == l->electrodes[i].ply) {
       add_region(&s, &w->plan.inked[i], mark, mark);
@@ -498,47 +451,30 @@ static void add_template(struct dea_workshop *w)
     dea_ply_stretch(film, s.part->stretch);
   }
   if (w->plan.held || w->plan.stretched) {
-    add_edge(&s, mark, w->plan.frame_m, f->ring.width_m.location);
+    add_region(&s, &w->plan.frame, mark, mark);
     const size_t first = s.part->contour_count;
-    add_edge(&s, mark, w->plan.blank_m, f->blank.margin.length.location);
+    add_region(&s, &w->plan.film, mark, mark);
     measure(s.part, first, mark, "film");
     measure_grid(&s, 0.9);
   }
 }
 
-/* Holes in the frame over the pads of electrodes that lie below. */
-static void add_windows(const struct sheet *s)
-{
-  const struct dea_fab_plan *plan = &s->w->plan;
-  const size_t first = s->part->contour_count;
-  for (size_t i = 0; i < plan->pad_count && plan->window_m > 0; i++) {
-    if (!s->layout->electrodes[plan->pad[i].electrode].top) {
-      add_circle(s, DEA_LAYER_CUT_INNER, plan->pad[i].at_m, plan->window_m,
-                 plan->design->fabrication.ring.contact_window_m.location);
-    }
-  }
-  measure(s->part, first, DEA_LAYER_CUT_INNER, "contact");
-}
-
 static void add_frame(struct dea_workshop *w)
 {
-  const struct dea_fabrication *f = &w->plan.design->fabrication;
   const enum dea_layer inner = DEA_LAYER_CUT_INNER, outer = DEA_LAYER_CUT_OUTER;
   struct sheet s = start(w, DEA_PART_FRAME, 0, "%s",
                          w->plan.held ? "Frame, to which the edge of the film is bonded"
                                       : "Frame that holds the film until it is cut");
-  if (w->plan.held) {
-    add_region(&s, &w->plan.hole, inner, outer);
-  } else {
-    add_box(&s, inner, w->plan.opening_m, f->frame_gap_m.location);
-  }
+  add_region(&s, &w->plan.hole, inner, outer);
   measure(s.part, 0, inner, "opening");
   size_t first = s.part->contour_count;
-  add_marks(&s, inner);
+  add_region(&s, &w->plan.marks, inner, outer);
   measure(s.part, first, inner, "mark");
-  add_windows(&s);
   first = s.part->contour_count;
-  add_edge(&s, outer, w->plan.frame_m, f->ring.width_m.location);
+  add_region(&s, &w->plan.windows, inner, outer);
+  measure(s.part, first, inner, "contact");
+  first = s.part->contour_count;
+  add_region(&s, &w->plan.frame, outer, inner);
   measure(s.part, first, outer, "frame");
 }
 
@@ -559,18 +495,17 @@ static dea_status add_holder(struct dea_workshop *w, size_t ply)
   if (status == DEA_OK) {
     struct sheet s =
         start(w, DEA_PART_OUTLINE, ply, "Ply '%.60s' in its holder", plan->layout->plies[ply].name);
-    const struct dea_location width = plan->design->fibres.width_m.location;
     const double outer = plan->piece_outer_m, half = 0.5 * d->fibre_width_m;
     add_region(&s, &opening, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
-    add_marks(&s, DEA_LAYER_CUT_INNER);
+    add_region(&s, &plan->marks, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
     const size_t first = s.part->contour_count;
-    add_edge(&s, DEA_LAYER_CUT_OUTER, plan->frame_m, f->ring.width_m.location);
+    add_region(&s, &plan->frame, DEA_LAYER_CUT_OUTER, DEA_LAYER_CUT_INNER);
     measure(s.part, first, DEA_LAYER_CUT_OUTER, "holder");
-    measure_length(&s, d->fibre_tip_radius_m, 0, outer, 0, "fibre", width);
+    measure_length(&s, d->fibre_tip_radius_m, 0, outer, 0, "fibre");
     if (plan->piece_end_m > outer) {
-      measure_length(&s, outer, 0, plan->piece_end_m, 0, "anchor", f->holder.anchor_m.location);
+      measure_length(&s, outer, 0, plan->piece_end_m, 0, "anchor");
     }
-    measure_length(&s, outer, -half, outer, half, "width", width);
+    measure_length(&s, outer, -half, outer, half, "width");
   }
   dea_region_free(&pieces);
   dea_region_free(&inside);
@@ -590,7 +525,7 @@ static void add_outline(struct dea_workshop *w, enum dea_part_kind kind, size_t 
   }
   measure(s.part, 0, DEA_LAYER_CUT_OUTER, "piece");
   measure(s.part, 0, DEA_LAYER_CUT_INNER, "hole");
-  add_marks(&s, DEA_LAYER_MARK);
+  add_region(&s, &w->plan.marks, DEA_LAYER_MARK, DEA_LAYER_MARK);
 }
 
 static dea_status add_plies_and_bodies(struct dea_workshop *w)

@@ -60,10 +60,9 @@ static void draw_part(const struct dea_paper *paper, const struct dea_part *part
   }
   add_contours(paper, part, DEA_LAYER_MARK, x, y);
   paper->type->stroke(paper->canvas, 0.18, 0x2a6f3a, 0);
-  for (size_t i = 0; i < part->text_count; i++) {
-    const struct dea_part_text *text = &part->text[i];
-    paper->type->text(paper->canvas, x + 1e3 * text->x_m, y + 1e3 * text->y_m,
-                      1.4e3 * text->height_m, DEA_ALIGN_CENTRE, false, 0x2a6f3a, text->text);
+  if (part->word != NULL) {
+    paper->type->text(paper->canvas, x, y + 1e3 * part->word_y_m, 1.4e3 * part->word_height_m,
+                      DEA_ALIGN_CENTRE, false, 0x2a6f3a, part->word);
   }
 }
 
@@ -144,7 +143,7 @@ static void draw_part_page(const struct dea_paper *paper, const struct dea_works
   double y = 0.5 * size[1] - 0.5e3 * (box[1] + box[3]);
   write_stretch(part, stretch, sizeof stretch);
   snprintf(below, sizeof below, "%s; %s; lengths of the %s film%s; %.80s",
-           part->paper ? "not to be cut" : "finished part, without kerf", part->seen,
+           part->paper ? "not to be cut" : "finished part, without kerf", dea_part_seen(part),
            dea_part_film_name(part), stretch, dea_path_name(w->plan.design->file));
   dea_dimensions_head(paper, size[0], size[1], part->title, below);
   dea_dimensions_scale(paper, size[0],

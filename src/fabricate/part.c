@@ -1,8 +1,6 @@
 #include "fabricate/part.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Whether a contour is a circle of two halves. */
@@ -32,31 +30,23 @@ void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_
   }
 }
 
-void dea_part_write(struct dea_part *part, double x_m, double y_m, double height_m,
-                    const char *format, ...)
-{
-  if (part->text_count < DEA_PART_TEXTS_MAX) {
-    struct dea_part_text *text = &part->text[part->text_count++];
-    *text = (struct dea_part_text){.x_m = x_m, .y_m = y_m, .height_m = height_m};
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text->text, sizeof text->text, format, args);
-    va_end(args);
-  }
-}
-
 void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double x0_m, double y0_m,
-                      double x1_m, double y1_m, const char *what, struct dea_location location)
+                      double x1_m, double y1_m, const char *what)
 {
   if (part->measure_count < DEA_PART_MEASURES_MAX) {
     part->measure[part->measure_count++] =
-        (struct dea_part_measure){kind, {x0_m, y0_m}, {x1_m, y1_m}, what, location};
+        (struct dea_part_measure){kind, {x0_m, y0_m}, {x1_m, y1_m}, what};
   }
 }
 
 const char *dea_part_film_name(const struct dea_part *part)
 {
   return part->flat ? "flat" : dea_film_state_name(part->state);
+}
+
+const char *dea_part_seen(const struct dea_part *part)
+{
+  return part->mirrored ? "seen from below" : "seen from above";
 }
 
 void dea_part_box(const struct dea_part *part, double box_m[4])

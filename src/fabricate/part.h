@@ -26,13 +26,7 @@ struct dea_part_contour {
   struct dea_contour path; // lent
 };
 
-enum {
-  DEA_PART_NAME_SIZE = 64,
-  DEA_PART_TITLE_SIZE = 128,
-  DEA_PART_TEXT_SIZE = 64,
-  DEA_PART_TEXTS_MAX = 4,
-  DEA_PART_MEASURES_MAX = 16
-};
+enum { DEA_PART_NAME_SIZE = 64, DEA_PART_TITLE_SIZE = 128, DEA_PART_MEASURES_MAX = 16 };
 
 enum dea_part_kind {
   DEA_PART_BLANK,  // of a ply that a frame holds
@@ -44,19 +38,12 @@ enum dea_part_kind {
   DEA_PART_TEMPLATE,
 };
 
-/* Words on a part, on layer MARK; x, y: middle of the first line. */
-struct dea_part_text {
-  double x_m, y_m, height_m;
-  char text[DEA_PART_TEXT_SIZE];
-};
-
 /* A dimension for drawings. */
 enum dea_measure_kind { DEA_MEASURE_DIAMETER, DEA_MEASURE_LENGTH };
 struct dea_part_measure {
   enum dea_measure_kind kind;
   double from_m[2], to_m[2]; // ends; of a diameter: at opposite places of the circle
   const char *what;          // "electrode"
-  struct dea_location location;
 };
 
 struct dea_part {
@@ -65,17 +52,16 @@ struct dea_part {
   size_t of;                       // number of the ply or body
   char name[DEA_PART_NAME_SIZE];   // of the files: "frame"
   char title[DEA_PART_TITLE_SIZE]; // "Pre-stretch frame"
-  const char *seen;                // from where: "seen from the fibres"
   enum dea_film_state state;
   bool flat;            // no film of the device is stretched: both states are the same
   double stretch[2][2]; // of its film, from unstretched to stretched; 0: it has none, or several
   size_t quantity;      // of it for one actuator
   bool paper;           // printed at 1:1, one for all copies, not cut
-  bool mirrored;        // seen from the side away from the fibres
+  bool mirrored;        // seen from below
   struct dea_part_contour *contour;
   size_t contour_count, contour_room;
-  struct dea_part_text text[DEA_PART_TEXTS_MAX];
-  size_t text_count;
+  const char *word; // on layer MARK, in the middle at x = 0; NULL: none
+  double word_y_m, word_height_m;
   struct dea_part_measure measure[DEA_PART_MEASURES_MAX];
   size_t measure_count;
 };
@@ -84,15 +70,15 @@ struct dea_part {
 
 /* Copies a contour. */
 void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_contour *contour);
-void dea_part_write(struct dea_part *part, double x_m, double y_m, double height_m,
-                    const char *format, ...) DEA_PRINTF(5, 6);
 void dea_part_measure(struct dea_part *part, enum dea_measure_kind kind, double x0_m, double y0_m,
-                      double x1_m, double y1_m, const char *what, struct dea_location location);
+                      double x1_m, double y1_m, const char *what);
 
 /* ---- looking at one ---- */
 
 /* "stretched", "unstretched", or "flat": the film that its lengths are of. */
 const char *dea_part_film_name(const struct dea_part *part);
+/* "seen from below" or "seen from above". */
+const char *dea_part_seen(const struct dea_part *part);
 
 /* {x min, y min, x max, y max} of all contours. */
 void dea_part_box(const struct dea_part *part, double box_m[4]);

@@ -11,31 +11,19 @@ enum { FRAME = 0xc9ced6, FIBRE = 0xe0a04a, WHITE = 0xffffff };
 
 /* What the workshop adds to the drawing of the device: contours and their looks. */
 struct picture {
-  struct dea_arena memory;        // of circles and boxes
+  struct dea_context *ctx;
   struct dea_drawn_shape *shapes; // [count] owned
   size_t count, capacity;
   char below[256];
   struct dea_device_drawing drawing;
 };
 
-/* contour: of the plan or of the picture's memory, which may have been short. */
 static void add(struct picture *p, struct dea_contour contour, const struct dea_drawn_shape *look)
 {
-  if (contour.vertex != NULL && dea_array_grow(p->memory.ctx, &p->shapes, p->count, &p->capacity,
-                                               sizeof *p->shapes) == DEA_OK) {
+  if (dea_array_grow(p->ctx, &p->shapes, p->count, &p->capacity, sizeof *p->shapes) == DEA_OK) {
     p->shapes[p->count] = *look;
     p->shapes[p->count++].contour = contour;
   }
-}
-
-static void add_circle(struct picture *p, double x, double y, double radius,
-                       const struct dea_drawn_shape *look)
-{
-  struct dea_vertex *v = dea_arena_alloc(&p->memory, 2, sizeof *v);
-  for (int k = 0; k < 2 && v != NULL; k++) {
-    v[k] = (struct dea_vertex){.x_m = x + (k == 0 ? radius : -radius), .y_m = y, .bulge = 1};
-  }
-  add(p, (struct dea_contour){v, 2, true}, look);
 }
 
 static void add_region(struct picture *p, const struct dea_region *region,
@@ -44,21 +32,6 @@ static void add_region(struct picture *p, const struct dea_region *region,
   for (size_t i = 0; i < region->contour_count; i++) {
     add(p, dea_region_contour(region, i), look);
   }
-}
-
-static void add_box(struct picture *p, const struct dea_fab_plan *plan, const double half[2],
-                    const struct dea_drawn_shape *look)
-{
-  if (plan->round) {
-    add_circle(p, plan->centre_m[0], plan->centre_m[1], half[0], look);
-    return;
-  }
-  struct dea_vertex *v = dea_arena_alloc(&p->memory, 4, sizeof *v);
-  for (int k = 0; k < 4 && v != NULL; k++) {
-    v[k].x_m = plan->centre_m[0] + (k == 0 || k == 3 ? half[0] : -half[0]);
-    v[k].y_m = plan->centre_m[1] + (k < 2 ? half[1] : -half[1]);
-  }
-  add(p, (struct dea_contour){v, 4, true}, look);
 }
 
 static void add_leads(struct picture *p, const struct dea_fab_plan *plan)
@@ -73,8 +46,7 @@ static void add_leads(struct picture *p, const struct dea_fab_plan *plan)
     const struct dea_drawn_shape pad = {
         .over = true, .note = e->top ? "pad above" : "pad below", .stretch = plan->stretch};
     add_region(p, &plan->inked[plan->pad[i].electrode], &lead);
-    add_circle(p, plan->centre_m[0] + plan->pad[i].at_m[0],
-               plan->centre_m[1] + plan->pad[i].at_m[1], plan->pad_m, &pad);
+    add(p, dea_region_contour(&plan->pads, i), &pad);
   }
 }
 
@@ -85,17 +57,10 @@ static void add_frame(struct picture *p, const struct dea_fab_plan *plan)
   const struct dea_drawn_shape hole = {.colour = WHITE, .opacity = 1};
   const struct dea_drawn_shape anchor = {.colour = FIBRE, .opacity = 0.85};
   const struct dea_drawn_shape mark = {.over = true, .colour = WHITE, .opacity = 1};
-  add_box(p, plan, plan->frame_m, &frame);
-  if (plan->held) {
-    add_region(p, &plan->hole, &hole);
-  } else {
-    add_box(p, plan, plan->opening_m, &hole);
-  }
+  add_region(p, &plan->frame, &frame);
+  add_region(p, &plan->hole, &hole);
   add_region(p, &plan->bonded, &anchor);
-  for (int m = 0; m < DEA_FAB_MARKS; m++) {
-    add_circle(p, plan->centre_m[0] + plan->mark_at_m[m][0],
-               plan->centre_m[1] + plan->mark_at_m[m][1], plan->mark_m, &mark);
-  }
+  add_region(p, &plan->marks, &mark);
 }
 
 /* p: zero; to be freed. */
@@ -105,7 +70,7 @@ static void build(struct picture *p, const struct dea_workshop *w)
   const struct dea_layout_ply *film = dea_layout_film(plan->layout);
   const char *title = plan->design->title.text, *file = dea_path_name(plan->design->file);
   char of[128] = "";
-  p->memory.ctx = w->memory.ctx;
+  p->ctx = w->memory.ctx;
   if (film != NULL && film->pre_stretch[0] == film->pre_stretch[1]) {
     snprintf(of, sizeof of, "; pre-stretch %.4g; film %.60s", film->pre_stretch[0],
              film->material.name);
@@ -120,18 +85,12 @@ static void build(struct picture *p, const struct dea_workshop *w)
                                            p->shapes, p->count};
 }
 
-static void destroy(struct picture *p)
-{
-  dea_free(p->memory.ctx, p->shapes);
-  dea_arena_free(&p->memory);
-}
-
 void dea_picture_size(const struct dea_workshop *workshop, double out_mm[2])
 {
   struct picture p = {0};
   build(&p, workshop);
   dea_device_drawing_size(&p.drawing, out_mm);
-  destroy(&p);
+  dea_free(p.ctx, p.shapes);
 }
 
 void dea_picture_draw(const struct dea_paper *paper, const struct dea_workshop *workshop)
@@ -139,5 +98,5 @@ void dea_picture_draw(const struct dea_paper *paper, const struct dea_workshop *
   struct picture p = {0};
   build(&p, workshop);
   dea_device_drawing_draw(paper, &p.drawing);
-  destroy(&p);
+  dea_free(p.ctx, p.shapes);
 }

@@ -61,9 +61,8 @@ static dea_status write_copy(struct dea_text *out, const struct dea_workshop *wo
       dea_free(out->ctx, memory);
     }
   }
-  for (size_t i = 0; i < part->text_count && layer == DEA_LAYER_MARK; i++) {
-    const struct dea_part_text *text = &part->text[i];
-    write_words(out, at[0] + text->x_m, height - at[1] - text->y_m, text->height_m, text->text);
+  if (part->word != NULL && layer == DEA_LAYER_MARK) {
+    write_words(out, at[0], height - at[1] - part->word_y_m, part->word_height_m, part->word);
   }
   return DEA_OK;
 }

@@ -2,6 +2,7 @@
  * corner, y upwards; colours 0xRRGGBB. */
 #pragma once
 
+#include "base/text.h"
 #include "geometry/contour.h"
 
 enum dea_canvas_format { DEA_CANVAS_PDF, DEA_CANVAS_SVG, DEA_CANVAS_PNG };
@@ -10,10 +11,11 @@ enum dea_align { DEA_ALIGN_LEFT, DEA_ALIGN_CENTRE, DEA_ALIGN_RIGHT };
 struct dea_canvas;
 
 struct dea_canvas_type {
-  /* title: of the document; lent until it is destroyed. Of dea_canvas_svg NULL. */
+  /* title: of the document; lent until it is destroyed. This, `page`, `finish` and `destroy` are
+   * NULL of dea_canvas_svg. */
   dea_status (*create)(struct dea_context *ctx, enum dea_canvas_format format, double width_mm,
                        double height_mm, const char *title, struct dea_canvas **out);
-  /* Ends a page and begins one of another size; PDF only, else NULL. */
+  /* Ends a page and begins one of another size; PDF only. */
   void (*page)(struct dea_canvas *canvas, double width_mm, double height_mm);
   /* Adds to the path: a contour, its metres times `scale`, moved by x, y. */
   void (*contour)(struct dea_canvas *canvas, const struct dea_contour *contour, double scale,
@@ -37,11 +39,13 @@ struct dea_canvas_type {
   void (*destroy)(struct dea_canvas *canvas);
 };
 
-/* One that writes the text of an SVG: no more than this library is needed. Letters have about the
- * width that DejaVu Sans gives them. number: tells the drawings of one page apart. */
+/* One that adds an SVG to a text: no more than this library is needed. Letters have about the width
+ * that DejaVu Sans gives them. number: tells the drawings of one page apart. canvas: ends by the
+ * second. DEA_E_MEMORY; later want of memory marks the text. */
 extern const struct dea_canvas_type dea_canvas_svg;
-dea_status dea_canvas_svg_create(struct dea_context *ctx, int number, double width_mm,
-                                 double height_mm, struct dea_canvas **out);
+dea_status dea_canvas_svg_begin(struct dea_text *out, int number, double width_mm, double height_mm,
+                                struct dea_canvas **canvas);
+void dea_canvas_svg_end(struct dea_canvas *canvas);
 
 /* A canvas with its type, as drawings are handed it. */
 struct dea_paper {

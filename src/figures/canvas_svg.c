@@ -9,9 +9,8 @@
 static const double unit = 4; // units of the drawing per mm
 
 struct dea_canvas {
-  struct dea_context *ctx;
-  struct dea_text path, body, whole;
-  double width_mm, height_mm;
+  struct dea_text *out, path;
+  double height_mm;
   int number, clips;
 };
 
@@ -25,29 +24,29 @@ static double y_of(const struct dea_canvas *canvas, double y_mm)
   return unit * (canvas->height_mm - y_mm);
 }
 
-static void destroy(struct dea_canvas *canvas)
+dea_status dea_canvas_svg_begin(struct dea_text *out, int number, double width_mm, double height_mm,
+                                struct dea_canvas **canvas)
 {
-  if (canvas != NULL) {
-    dea_text_free(&canvas->path);
-    dea_text_free(&canvas->body);
-    dea_text_free(&canvas->whole);
-    dea_free(canvas->ctx, canvas);
-  }
+  double width = unit * width_mm, height = unit * height_mm;
+  *canvas = dea_alloc(out->ctx, 1, sizeof **canvas);
+  DEA_TRY_MEMORY(*canvas != NULL);
+  **canvas = (struct dea_canvas){
+      .out = out, .path = {.ctx = out->ctx}, .height_mm = height_mm, .number = number};
+  dea_text_add(
+      out,
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"device\" width=\"%.0f\" height=\"%.0f\" "
+      "viewBox=\"0 0 %.0f %.0f\" "
+      "font-family=\"'DejaVu Sans',Helvetica,Arial,sans-serif\" stroke-linejoin=\"round\">"
+      "<path d=\"M0 0h%.0fv%.0fH0z\" fill=\"#fff\"/>\n",
+      width, height, width, height, width, height);
+  return DEA_OK;
 }
 
-dea_status dea_canvas_svg_create(struct dea_context *ctx, int number, double width_mm,
-                                 double height_mm, struct dea_canvas **out)
+void dea_canvas_svg_end(struct dea_canvas *canvas)
 {
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  **out = (struct dea_canvas){.ctx = ctx,
-                              .path = {.ctx = ctx},
-                              .body = {.ctx = ctx},
-                              .whole = {.ctx = ctx},
-                              .width_mm = width_mm,
-                              .height_mm = height_mm,
-                              .number = number};
-  return DEA_OK;
+  dea_text_add(canvas->out, "</svg>\n");
+  dea_text_free(&canvas->path);
+  dea_free(canvas->out->ctx, canvas);
 }
 
 static void contour(struct dea_canvas *canvas, const struct dea_contour *c, double scale,
@@ -85,14 +84,14 @@ static void box(struct dea_canvas *canvas, double x, double y, double width, dou
 
 static void forget_path(struct dea_canvas *canvas)
 {
-  canvas->body.failed |= canvas->path.failed;
+  canvas->out->failed |= canvas->path.failed;
   dea_text_free(&canvas->path);
-  canvas->path = (struct dea_text){.ctx = canvas->ctx};
+  canvas->path = (struct dea_text){.ctx = canvas->out->ctx};
 }
 
 static void fill(struct dea_canvas *canvas, unsigned colour, double opacity, bool keep)
 {
-  dea_text_add(&canvas->body,
+  dea_text_add(canvas->out,
                "<path d=\"%s\" fill=\"#%06x\" fill-opacity=\"%.3g\" fill-rule=\"evenodd\"/>\n",
                dea_text_get(&canvas->path), colour, opacity);
   if (!keep) {
@@ -102,19 +101,19 @@ static void fill(struct dea_canvas *canvas, unsigned colour, double opacity, boo
 
 static void stroke(struct dea_canvas *canvas, double width_mm, unsigned colour, double dash_mm)
 {
-  dea_text_add(&canvas->body, "<path d=\"%s\" fill=\"none\" stroke=\"#%06x\" stroke-width=\"%.3g\"",
+  dea_text_add(canvas->out, "<path d=\"%s\" fill=\"none\" stroke=\"#%06x\" stroke-width=\"%.3g\"",
                dea_text_get(&canvas->path), colour, unit * width_mm);
   if (dash_mm > 0) {
-    dea_text_add(&canvas->body, " stroke-dasharray=\"%.3g\"", unit * dash_mm);
+    dea_text_add(canvas->out, " stroke-dasharray=\"%.3g\"", unit * dash_mm);
   }
-  dea_text_add(&canvas->body, "/>\n");
+  dea_text_add(canvas->out, "/>\n");
   forget_path(canvas);
 }
 
 static void clip(struct dea_canvas *canvas)
 {
   int id = canvas->clips++;
-  dea_text_add(&canvas->body,
+  dea_text_add(canvas->out,
                "<clipPath id=\"clip-%d-%d\"><path d=\"%s\" clip-rule=\"evenodd\"/></clipPath>"
                "<g clip-path=\"url(#clip-%d-%d)\">\n",
                canvas->number, id, dea_text_get(&canvas->path), canvas->number, id);
@@ -123,7 +122,7 @@ static void clip(struct dea_canvas *canvas)
 
 static void unclip(struct dea_canvas *canvas)
 {
-  dea_text_add(&canvas->body, "</g>\n");
+  dea_text_add(canvas->out, "</g>\n");
 }
 
 static double text_width(struct dea_canvas *canvas, double size_mm, bool bold, const char *text)
@@ -140,26 +139,10 @@ static void text(struct dea_canvas *canvas, double x_mm, double y_mm, double siz
                  enum dea_align align, bool bold, unsigned colour, const char *words)
 {
   static const char *const anchor[] = {"start", "middle", "end"};
-  dea_html_add(&canvas->body,
+  dea_html_add(canvas->out,
                "<text x=\"%.2f\" y=\"%.2f\" font-size=\"%.3g\" fill=\"#%06x\" text-anchor=\"%s\"",
                x_of(x_mm), y_of(canvas, y_mm), unit * size_mm, colour, anchor[align]);
-  dea_html_add(&canvas->body, bold ? " font-weight=\"bold\">%s</text>\n" : ">%s</text>\n", words);
-}
-
-static dea_status finish(struct dea_canvas *canvas, const char **bytes, size_t *length)
-{
-  double width = unit * canvas->width_mm, height = unit * canvas->height_mm;
-  dea_text_add(
-      &canvas->whole,
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"device\" width=\"%.0f\" height=\"%.0f\" "
-      "viewBox=\"0 0 %.0f %.0f\" "
-      "font-family=\"'DejaVu Sans',Helvetica,Arial,sans-serif\" stroke-linejoin=\"round\">"
-      "<path d=\"M0 0h%.0fv%.0fH0z\" fill=\"#fff\"/>\n%s</svg>\n",
-      width, height, width, height, width, height, dea_text_get(&canvas->body));
-  DEA_TRY_MEMORY(!canvas->whole.failed && !canvas->body.failed && !canvas->path.failed);
-  *bytes = canvas->whole.data;
-  *length = canvas->whole.length;
-  return DEA_OK;
+  dea_html_add(canvas->out, bold ? " font-weight=\"bold\">%s</text>\n" : ">%s</text>\n", words);
 }
 
 const struct dea_canvas_type dea_canvas_svg = {
@@ -172,6 +155,4 @@ const struct dea_canvas_type dea_canvas_svg = {
     .unclip = unclip,
     .text = text,
     .text_width = text_width,
-    .finish = finish,
-    .destroy = destroy,
 };

@@ -389,45 +389,24 @@ static void find_sides(const struct dea_contour *contour, double side[2])
   side[1] = high[1] - low[1];
 }
 
-/* Whether a contour is a circle, and its centre and radius. */
-static bool is_circle(const struct dea_contour *contour, double centre[2], double *radius)
-{
-  const struct dea_piece first = dea_contour_piece(contour, 0);
-  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
-    const struct dea_piece piece = dea_contour_piece(contour, i);
-    if (!piece.arc || hypot(piece.centre[0] - first.centre[0], piece.centre[1] - first.centre[1]) >
-                          1e-9 * first.radius_m) {
-      return false;
-    }
-  }
-  memcpy(centre, first.centre, sizeof first.centre);
-  *radius = first.radius_m;
-  return true;
-}
-
-static void write_length(char out[32], double length_m)
-{
-  dea_length_text(out, 32, length_m);
-}
-
 /* The label of an outline: "Ø 30 mm", "40 x 20 mm", with how many there are of its area: "3 x Ø 2
  * mm", "4 of 11 x 2 mm". */
 static void write_sides(const struct dea_contour *contour, size_t like, char *out, size_t size)
 {
   char a[32], b[32], times[32] = "";
   double side[2], centre[2], radius;
-  bool circle = is_circle(contour, centre, &radius);
+  bool circle = dea_contour_is_circle(contour, centre, &radius);
   if (like > 1) {
     snprintf(times, sizeof times, circle ? "%zu \303\227 " : "%zu of ", like);
   }
   if (circle) {
-    write_length(a, 2 * radius);
+    dea_length_text(a, sizeof a, 2 * radius);
     snprintf(out, size, "%.20s\303\230 %.16s mm", times, a);
     return;
   }
   find_sides(contour, side);
-  write_length(a, side[0]);
-  write_length(b, side[1]);
+  dea_length_text(a, sizeof a, side[0]);
+  dea_length_text(b, sizeof b, side[1]);
   snprintf(out, size, "%.20s%.16s \303\227 %.16s mm", times, a, b);
 }
 
@@ -436,7 +415,7 @@ static void place_callout(const struct view *v, const struct dea_contour *contou
                           struct dea_callout *c)
 {
   double centre[2], radius, best = -INFINITY;
-  if (is_circle(contour, centre, &radius)) {
+  if (dea_contour_is_circle(contour, centre, &radius)) {
     *c = (struct dea_callout){
         .x_mm = x_of(v, centre[0]), .y_mm = y_of(v, centre[1]), .radius_mm = v->scale * radius};
     return;
@@ -485,8 +464,8 @@ static void set_note(struct dea_callout *c, const char *what, const struct dea_c
 {
   char text[32], rest[25] = "";
   double centre[2], radius;
-  if (stretch != 1 && is_circle(contour, centre, &radius)) {
-    write_length(text, 2 * radius / stretch);
+  if (stretch != 1 && dea_contour_is_circle(contour, centre, &radius)) {
+    dea_length_text(text, sizeof text, 2 * radius / stretch);
     snprintf(rest, sizeof rest, "%.10s unstretched", text);
   }
   write_note(c, what, rest);
@@ -750,12 +729,13 @@ static size_t find_cuts(const struct view *v, double x[CUTS])
   return count;
 }
 
-static void section_box(const struct view *v, double box[4])
+/* The box between two heights on the page, beside which labels stand. */
+static void views_box(double low, double high, double box[4])
 {
   box[0] = middle - 0.5 * plan_width;
+  box[1] = low;
   box[2] = middle + 0.5 * plan_width;
-  box[1] = v->section_y;
-  box[3] = v->section_y + v->section_height;
+  box[3] = high;
 }
 
 static void draw_section(const struct view *v)
@@ -763,7 +743,7 @@ static void draw_section(const struct view *v)
   double x[CUTS], box[4];
   struct dea_callout callouts[CALLOUTS];
   size_t count = find_cuts(v, x);
-  section_box(v, box);
+  views_box(v->section_y, v->section_y + v->section_height, box);
   draw_clamps(v, box[3]);
   for (size_t i = 0; i < v->layout->ply_count; i++) {
     draw_section_ply(v, i, x, count);
@@ -974,7 +954,7 @@ static void draw_scale_bar(const struct view *v, double y)
   double wanted = 0.25 * (v->box[2] - v->box[0]), unit = pow(10, floor(log10(wanted)));
   double length = wanted >= 5 * unit ? 5 * unit : wanted >= 2 * unit ? 2 * unit : unit;
   char text[32], words[48];
-  write_length(text, length);
+  dea_length_text(text, sizeof text, length);
   snprintf(words, sizeof words, "%s mm", text);
   type->line(v->paper->canvas, margin, y, margin + v->scale * length, y);
   type->stroke(v->paper->canvas, 0.7, INK, 0);
@@ -996,14 +976,6 @@ static void find_box(struct view *v)
   v->scale = fmin(plan_width / width, plan_height / height);
 }
 
-static void plan_box(const struct view *v, double box[4])
-{
-  box[0] = middle - 0.5 * plan_width;
-  box[2] = middle + 0.5 * plan_width;
-  box[1] = y_of(v, v->box[1]);
-  box[3] = y_of(v, v->box[3]);
-}
-
 /* Heights of all, and from them the page's and where things stand on it. */
 static struct view arrange(const struct dea_device_drawing *drawing)
 {
@@ -1014,9 +986,9 @@ static struct view arrange(const struct dea_device_drawing *drawing)
   for (size_t i = 0; i < v.layout->ply_count; i++) {
     v.section_height += section_height(v.layout, i);
   }
-  plan_box(&v, box);
+  views_box(y_of(&v, v.box[1]), y_of(&v, v.box[3]), box);
   v.plan_room = dea_dimensions_height(box, callouts, call_out_plan(&v, callouts)) + 2 * band + 4;
-  section_box(&v, box);
+  views_box(v.section_y, v.section_y + v.section_height, box);
   size_t count = find_cuts(&v, x);
   find_bases(&v, x, count);
   size_t used = call_out_section(&v, x, count, callouts);
@@ -1051,7 +1023,7 @@ void dea_device_drawing_draw(const struct dea_paper *paper,
     dea_dimensions_head(paper, page_width, v.height, drawing->title, drawing->below);
   }
   draw_plan(&v);
-  plan_box(&v, box);
+  views_box(y_of(&v, v.box[1]), y_of(&v, v.box[3]), box);
   dea_dimensions_callouts(paper, box, callouts, call_out_plan(&v, callouts));
   double words = v.plan_y - 0.5 * v.plan_room;
   draw_scale_bar(&v, words);
@@ -1064,23 +1036,16 @@ void dea_device_drawing_draw(const struct dea_paper *paper,
 dea_status dea_device_drawing_add_svg(const struct dea_device_drawing *drawing, int number,
                                       struct dea_text *out)
 {
-  const struct dea_canvas_type *type = &dea_canvas_svg;
-  struct dea_paper paper = {type, NULL};
+  struct dea_paper paper = {&dea_canvas_svg, NULL};
   double size[2];
-  const char *bytes;
-  size_t length;
   dea_device_drawing_size(drawing, size);
   void *locale = dea_c_locale_enter();
-  dea_status status = dea_canvas_svg_create(out->ctx, number, size[0], size[1], &paper.canvas);
-  if (status == DEA_OK) {
+  if (dea_canvas_svg_begin(out, number, size[0], size[1], &paper.canvas) == DEA_OK) {
     dea_device_drawing_draw(&paper, drawing);
-    status = type->finish(paper.canvas, &bytes, &length);
+    dea_canvas_svg_end(paper.canvas);
+  } else {
+    out->failed = true;
   }
-  if (status == DEA_OK) {
-    dea_text_add(out, "%.*s", (int)length, bytes);
-  }
-  out->failed |= status != DEA_OK;
-  type->destroy(paper.canvas);
   dea_c_locale_leave(locale);
   return out->failed ? DEA_E_MEMORY : DEA_OK;
 }

@@ -146,7 +146,7 @@ static dea_status draw(struct dea_plot_folder *folder, const struct dea_device_f
       dea_panel_even_tics(&plot->panels[p], p == 0 ? 7 : 4);
     }
     dea_panel_begin_at_zero(&plot->panels[0]);
-    dea_panel_mark(&plot->panels[1], false, 0, "");
+    dea_panel_mark(&plot->panels[1], 0, "");
     dea_panel_place_key(&plot->panels[0]);
   }
   return dea_plot_folder_add(folder, plot, status);

@@ -42,11 +42,16 @@ struct space {
   size_t frame_lines, lines; // lines of frame and electrode, all lines
 };
 
-/* A figure: its name and what adds its script. */
+enum { PICTURES_MAX = 33 };
+
+/* What `write` knows of a figure. */
 struct view {
-  const char *name;
   bool moved, flat; // as of struct space
   size_t pieces;    // as of dea_surface_lattice_create
+  /* The pictures that it shows; *count of them are to be freed, also after a failure. */
+  dea_status (*gather)(struct dea_context *ctx, const struct dea_figure *figure,
+                       const struct dea_result *result, double voltage_V,
+                       struct picture pictures[PICTURES_MAX], size_t *count);
   void (*add_script)(struct dea_text *gp, const struct space *space,
                      const struct dea_plot_format *format);
 };
@@ -67,19 +72,15 @@ static const struct dea_surface_record *last_trusted(const struct dea_result *re
   return best;
 }
 
-/* The surface of the result's first model with surfaces at the voltage, or the nearest to it; the
- * last one that is to be trusted for NAN, or the last where none is. NULL when there is none. */
-static const struct dea_surface_record *choose_surface(const struct dea_result *result,
-                                                       double voltage_V)
+/* The surface nearest to a voltage, the last for NAN: of the result's first model with surfaces, or
+ * of those with shapes of modes. NULL when there is none. */
+static const struct dea_surface_record *nearest(const struct dea_result *result, double voltage_V,
+                                                bool with_shapes)
 {
-  const struct dea_surface_record *trusted = isnan(voltage_V) ? last_trusted(result) : NULL;
-  if (trusted != NULL) {
-    return trusted;
-  }
   const struct dea_surface_record *best = NULL;
   for (size_t i = 0; i < result->surface_count; i++) {
     const struct dea_surface_record *record = &result->surfaces[i];
-    if (dea_surface_is_first(result, i) &&
+    if ((with_shapes ? dea_surface_has_shapes(record) : dea_surface_is_first(result, i)) &&
         (best == NULL || isnan(voltage_V) ||
          fabs(record->voltage_V - voltage_V) < fabs(best->voltage_V - voltage_V))) {
       best = record;
@@ -323,6 +324,17 @@ static void add_command(struct dea_text *gp, const struct space *space)
   dea_text_add(gp, "\n");
 }
 
+/* The end of the script of one picture. */
+static void add_only_command(struct dea_text *gp, const struct space *space)
+{
+  dea_text_add(gp,
+               "  eval \"set pm3d \".facets\n"
+               "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
+               "  k = 0\n");
+  add_command(gp, space);
+  dea_text_add(gp, "  unset output\n}\n");
+}
+
 /* Towards the viewer. */
 static void view_direction(bool flat, double out[3])
 {
@@ -433,49 +445,51 @@ static void add_data(struct dea_text *dat, const struct space *space)
   }
 }
 
-static dea_status write_view(struct dea_context *ctx, const struct view *view,
-                             const struct picture *pictures, size_t count,
-                             const struct dea_plot_format *format, const char *directory)
+/* Of any figure here. */
+static dea_status write(struct dea_context *ctx, const struct dea_figure *figure,
+                        const struct dea_result *result, const struct dea_figure_options *options,
+                        const char *directory, bool *drawn)
 {
+  const struct view *view = figure->view;
+  struct picture pictures[PICTURES_MAX];
   struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
-  struct space space;
-  char file[80];
-  measure(pictures, count, &space);
-  space.moved = view->moved;
-  space.flat = view->flat;
-  void *before = dea_c_locale_enter();
-  view->add_script(&gp, &space, format);
-  add_data(&dat, &space);
-  dea_c_locale_leave(before);
-  snprintf(file, sizeof file, "%.60s.dat", view->name);
-  dea_status status = dea_text_write(ctx, &dat, directory, file);
-  snprintf(file, sizeof file, "%.60s.gp", view->name);
-  status = status == DEA_OK ? dea_text_write(ctx, &gp, directory, file) : status;
-  dea_text_free(&gp);
-  dea_text_free(&dat);
+  size_t count = 0;
+  dea_status status = view->gather(ctx, figure, result, options->voltage_V, pictures, &count);
+  *drawn = status == DEA_OK && count > 0;
+  if (*drawn) {
+    struct space space;
+    measure(pictures, count, &space);
+    space.moved = view->moved;
+    space.flat = view->flat;
+    void *before = dea_c_locale_enter();
+    view->add_script(&gp, &space, &options->format);
+    add_data(&dat, &space);
+    dea_c_locale_leave(before);
+    status = dea_script_write(directory, figure->name, &gp, &dat);
+  }
+  for (size_t i = 0; i < count; i++) {
+    free_picture(ctx, &pictures[i]);
+  }
   return status;
 }
 
-/* The same for the surface at the voltage of the options. */
-static dea_status write_one(struct dea_context *ctx, const struct view *figure,
-                            const struct dea_result *result,
-                            const struct dea_figure_options *options, const char *directory,
-                            bool *drawn)
+/* Gathers the surface at a voltage; for NAN the last that is to be trusted. */
+static dea_status gather_one(struct dea_context *ctx, const struct dea_figure *figure,
+                             const struct dea_result *result, double voltage_V,
+                             struct picture pictures[PICTURES_MAX], size_t *count)
 {
-  const struct dea_surface_record *record = choose_surface(result, options->voltage_V);
-  struct picture picture;
-  *drawn = record != NULL && record->mesh->cell_count > 0;
-  if (!*drawn) {
+  const struct view *view = figure->view;
+  const struct dea_surface_record *trusted = isnan(voltage_V) ? last_trusted(result) : NULL;
+  const struct dea_surface_record *record =
+      trusted != NULL ? trusted : nearest(result, voltage_V, false);
+  if (record == NULL || record->mesh->cell_count == 0) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, report_surface(ctx, figure->name, record, options->voltage_V));
-  dea_status status = create_picture(ctx, result, record, figure->pieces, &picture);
-  if (status == DEA_OK) {
-    status = write_view(ctx, figure, &picture, 1, &options->format, directory);
-  }
-  free_picture(ctx, &picture);
-  return status;
+  DEA_TRY(ctx, report_surface(ctx, figure->name, record, voltage_V));
+  *count = 1;
+  return create_picture(ctx, result, record, view->pieces, &pictures[0]);
 }
+
 // From above --------------------------------------------------------------------------------------
 
 static const char map_caption[] =
@@ -509,26 +523,16 @@ static void add_map_script(struct dea_text *gp, const struct space *space,
                "  set xlabel \"{/:Italic x} (mm)\" offset 0,x_shift\n"
                "  set ylabel \"{/:Italic y} (mm)\" offset y_shift,0\n"
                "  set cblabel \"%s\" offset 1.5,0\n"
-               "  set label 1 \"%s\" at graph 0, graph %.4f front\n"
-               "  eval \"set pm3d \".facets\n"
-               "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
-               "  k = 0\n",
+               "  set label 1 \"%s\" at graph 0, graph %.4f front\n",
                colour_words(space), space->pictures[0].words, 1 + 0.045 / shape);
-  add_command(gp, space);
-  dea_text_add(gp, "  unset output\n}\n");
+  add_only_command(gp, space);
 }
 
-static dea_status write_map(struct dea_context *ctx, const struct dea_result *result,
-                            const struct dea_figure_options *options, const char *directory,
-                            bool *drawn)
-{
-  static const struct view view = {
-      .name = "map", .flat = true, .pieces = 3000, .add_script = add_map_script};
-  return write_one(ctx, &view, result, options, directory, drawn);
-}
+static const struct view map = {
+    .flat = true, .pieces = 3000, .gather = gather_one, .add_script = add_map_script};
 
 const struct dea_figure dea_figure_map = {
-    .name = "map", .caption = map_caption, .write = write_map};
+    .name = "map", .caption = map_caption, .write = write, .view = &map};
 
 // In space ----------------------------------------------------------------------------------------
 
@@ -552,34 +556,25 @@ static void add_surface_script(struct dea_text *gp, const struct space *space,
                "  set cblabel \"%s\" offset 1.5,0\n"
                "  set label 1 \"%s, {/:Italic z} \303\227 %g\" at screen 0.03, screen 0.94 "
                "front\n"
-               "  set label 2 \"%s\" at screen 0.03, screen 0.06 front\n"
-               "  eval \"set pm3d \".facets\n"
-               "  set pm3d interpolate (format eq \"png\" ? 2 : 1), (format eq \"png\" ? 2 : 1)\n"
-               "  k = 0\n",
+               "  set label 2 \"%s\" at screen 0.03, screen 0.06 front\n",
                colour_words(space), space->pictures[0].words, space->times,
                size_words(space, size));
-  add_command(gp, space);
-  dea_text_add(gp, "  unset output\n}\n");
+  add_only_command(gp, space);
 }
 
-static dea_status write_surface(struct dea_context *ctx, const struct dea_result *result,
-                                const struct dea_figure_options *options, const char *directory,
-                                bool *drawn)
-{
-  static const struct view view = {
-      .name = "surface", .moved = true, .pieces = 3000, .add_script = add_surface_script};
-  return write_one(ctx, &view, result, options, directory, drawn);
-}
+static const struct view surface = {
+    .moved = true, .pieces = 3000, .gather = gather_one, .add_script = add_surface_script};
 
 const struct dea_figure dea_figure_surface = {
     .name = "surface",
     .caption = "the deformed film in space, coloured by its displacement",
-    .write = write_surface,
+    .write = write,
+    .view = &surface,
 };
 
 // Over the sweep ----------------------------------------------------------------------------------
 
-enum { FRAME_PIECES = 1200, FRAMES_MAX = 33, WIDTH_PX = 720, LABEL_PX = 40 };
+enum { WIDTH_PX = 720, LABEL_PX = 40 };
 
 static void add_animation_script(struct dea_text *gp, const struct space *space,
                                  const struct dea_plot_format *format)
@@ -613,60 +608,44 @@ static void add_animation_script(struct dea_text *gp, const struct space *space,
   dea_text_add(gp, "}\nunset output\n");
 }
 
-static dea_status write_animation(struct dea_context *ctx, const struct dea_result *result,
-                                  const struct dea_figure_options *options, const char *directory,
-                                  bool *drawn)
+static dea_status gather_sweep(struct dea_context *ctx, const struct dea_figure *figure,
+                               const struct dea_result *result, double voltage_V,
+                               struct picture pictures[PICTURES_MAX], size_t *count)
 {
-  static const struct view view = {.name = "animation", .add_script = add_animation_script};
-  const struct dea_surface_record *records[FRAMES_MAX];
-  struct picture pictures[FRAMES_MAX];
-  const size_t count = dea_surface_spread_same(result, FRAMES_MAX, records);
-  size_t done = 0;
-  dea_status status = DEA_OK;
-  *drawn = count > 1 && records[0]->mesh->cell_count > 0; // one is no animation
-  for (; *drawn && done < count && status == DEA_OK; done++) {
-    status = create_picture(ctx, result, records[done], FRAME_PIECES, &pictures[done]);
+  const struct view *view = figure->view;
+  const struct dea_surface_record *records[PICTURES_MAX];
+  const size_t frames = dea_surface_spread_same(result, PICTURES_MAX, records);
+  (void)voltage_V;
+  if (frames < 2 || records[0]->mesh->cell_count == 0) { // one is no animation
+    return DEA_OK;
   }
-  if (*drawn && status == DEA_OK) {
-    status = write_view(ctx, &view, pictures, count, &options->format, directory);
+  while (*count < frames) {
+    struct picture *picture = &pictures[(*count)++];
+    DEA_TRY(ctx, create_picture(ctx, result, records[*count - 1], view->pieces, picture));
   }
-  for (size_t i = 0; i < done; i++) {
-    free_picture(ctx, &pictures[i]);
-  }
-  return status;
+  return DEA_OK;
 }
+
+static const struct view animation = {
+    .pieces = 1200, .gather = gather_sweep, .add_script = add_animation_script};
 
 const struct dea_figure dea_figure_animation = {
     .name = "animation",
     .caption = "the deformed film over the sweep",
     .on_request = true,
-    .write = write_animation,
+    .write = write,
+    .view = &animation,
 };
 
 // Modes -------------------------------------------------------------------------------------------
 
-enum { SHAPE_PIECES = 1500, SHAPES_MAX = 6, ACROSS = 3 };
+enum { SHAPES_MAX = 6, ACROSS = 3 };
 static const char shapes_caption[] = "shapes of the lowest modes, motion out of the plane";
-
-/* The surface with shapes nearest to a voltage; the last one for NAN. */
-static const struct dea_surface_record *choose_shapes(const struct dea_result *result,
-                                                      double voltage_V)
-{
-  const struct dea_surface_record *best = NULL;
-  for (size_t i = 0; i < result->surface_count; i++) {
-    const struct dea_surface_record *record = &result->surfaces[i];
-    if (dea_surface_has_shapes(record) &&
-        (best == NULL || isnan(voltage_V) ||
-         fabs(record->voltage_V - voltage_V) < fabs(best->voltage_V - voltage_V))) {
-      best = record;
-    }
-  }
-  return best;
-}
 
 /* A shape as the displacement of a picture; one unit is drawn as a micrometre. */
 static dea_status build_shape(struct dea_context *ctx, const struct dea_surface_record *record,
-                              const struct dea_mesh_field *shape, struct picture *out)
+                              const struct dea_mesh_field *shape, size_t pieces,
+                              struct picture *out)
 {
   struct dea_field_mesh mesh = *record->mesh; // lends all but one array
   const struct dea_surface_record moved = {.voltage_V = record->voltage_V, .mesh = &mesh};
@@ -680,7 +659,7 @@ static dea_status build_shape(struct dea_context *ctx, const struct dea_surface_
       mesh.fields[f].values = values;
     }
   }
-  dea_status status = create_picture(ctx, NULL, &moved, SHAPE_PIECES, out);
+  dea_status status = create_picture(ctx, NULL, &moved, pieces, out);
   dea_free(ctx, values);
   return status;
 }
@@ -701,12 +680,16 @@ static struct dea_load_point point_of(const struct dea_result *result, double vo
   return dea_load_point_empty();
 }
 
-/* *count: how many were made, also after a failure. */
-static dea_status build_shapes(struct dea_context *ctx, const struct dea_result *result,
-                               const struct dea_surface_record *record,
-                               struct picture pictures[SHAPES_MAX], size_t *count)
+static dea_status gather_shapes(struct dea_context *ctx, const struct dea_figure *figure,
+                                const struct dea_result *result, double voltage_V,
+                                struct picture pictures[PICTURES_MAX], size_t *count)
 {
-  *count = 0;
+  const struct view *view = figure->view;
+  const struct dea_surface_record *record = nearest(result, voltage_V, true);
+  if (record == NULL || record->mesh->cell_count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, report_surface(ctx, figure->name, record, voltage_V));
   for (size_t k = 1; k <= SHAPES_MAX; k++) {
     char field[32];
     snprintf(field, sizeof field, DEA_SHAPE_FIELD, (int)k);
@@ -716,7 +699,7 @@ static dea_status build_shapes(struct dea_context *ctx, const struct dea_result 
     }
     const struct dea_load_point point = point_of(result, record->voltage_V, k);
     struct picture *picture = &pictures[(*count)++];
-    DEA_TRY(ctx, build_shape(ctx, record, shape, picture));
+    DEA_TRY(ctx, build_shape(ctx, record, shape, view->pieces, picture));
     snprintf(picture->words, sizeof picture->words, "%zu: %.4g Hz%s", k, fabs(point.frequency_Hz),
              point.frequency_Hz < 0          ? ", unstable"
              : point.mode_out_of_plane < 0.5 ? ", in plane"
@@ -767,29 +750,8 @@ static void add_shapes_script(struct dea_text *gp, const struct space *space,
   dea_text_add(gp, "  unset multiplot\n  unset output\n}\n");
 }
 
-static dea_status write_shapes(struct dea_context *ctx, const struct dea_result *result,
-                               const struct dea_figure_options *options, const char *directory,
-                               bool *drawn)
-{
-  static const struct view view = {
-      .name = "mode_shapes", .flat = true, .add_script = add_shapes_script};
-  const struct dea_surface_record *record = choose_shapes(result, options->voltage_V);
-  struct picture pictures[SHAPES_MAX];
-  size_t count;
-  *drawn = record != NULL && record->mesh->cell_count > 0;
-  if (!*drawn) {
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, report_surface(ctx, view.name, record, options->voltage_V));
-  dea_status status = build_shapes(ctx, result, record, pictures, &count);
-  if (status == DEA_OK) {
-    status = write_view(ctx, &view, pictures, count, &options->format, directory);
-  }
-  for (size_t k = 0; k < count; k++) {
-    free_picture(ctx, &pictures[k]);
-  }
-  return status;
-}
+static const struct view mode_shapes = {
+    .flat = true, .pieces = 1500, .gather = gather_shapes, .add_script = add_shapes_script};
 
 const struct dea_figure dea_figure_mode_shapes = {
-    .name = "mode_shapes", .caption = shapes_caption, .write = write_shapes};
+    .name = "mode_shapes", .caption = shapes_caption, .write = write, .view = &mode_shapes};

@@ -72,7 +72,7 @@ static dea_status write_one(struct dea_plot_folder *folder, const struct dea_res
   const size_t before = folder->count;
   if (figure->write != NULL) {
     bool drawn = false;
-    DEA_TRY(ctx, figure->write(ctx, result, options, folder->path, &drawn));
+    DEA_TRY(ctx, figure->write(ctx, figure, result, options, folder->path, &drawn));
     DEA_TRY(ctx, drawn ? dea_plot_folder_name(folder, figure->name) : DEA_OK);
   } else {
     struct dea_plot *plot;

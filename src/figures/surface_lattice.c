@@ -193,7 +193,6 @@ static void fill_patch(const struct element *element, struct dea_patch *patch,
     out->z_min_m = fmin(out->z_min_m, at[DEA_LATTICE_UZ]);
     out->z_max_m = fmax(out->z_max_m, at[DEA_LATTICE_UZ]);
   }
-  out->piece_count += (size_t)(patch->n * patch->m);
 }
 
 /* The middle of the box and what lies farthest from it. */

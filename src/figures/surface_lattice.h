@@ -32,7 +32,7 @@ struct dea_patch {
 };
 
 struct dea_surface_lattice {
-  size_t patch_count, piece_count;   // pieces: of all patches
+  size_t patch_count;
   struct dea_patch *patches;         // [patch_count], owned
   double (*at)[DEA_LATTICE_COLUMNS]; // of all patches, owned
   double low_m[2], high_m[2];        // least and largest x and y

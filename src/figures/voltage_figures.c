@@ -257,8 +257,8 @@ static dea_status build_column(struct dea_context *ctx, const struct dea_result 
   }
   snprintf(panel->y_label, sizeof panel->y_label, "%s", label);
   dea_panel_voltage_axis(panel);
-  if (zero != NULL && dea_panel_range(panel, false, &low, &high) && low < 0.25 * high) {
-    dea_panel_mark(panel, false, 0, zero);
+  if (zero != NULL && dea_panel_range(panel, &low, &high) && low < 0.25 * high) {
+    dea_panel_mark(panel, 0, zero);
   }
   DEA_TRY(ctx, dea_figure_add_events(ctx, panel, result, column, dea_point_columns[column].factor,
                                      0.0, false));

@@ -107,7 +107,6 @@ dea_status dea_weibull_draw(struct dea_context *ctx, const struct dea_weibull_pi
   struct dea_plot *plot;
   DEA_TRY(ctx, dea_plot_create(ctx, "fit", picture->caption, &plot));
   struct dea_panel *panel = &plot->panels[0];
-  plot->panel_count = 1;
   dea_status status = add_law(ctx, picture, panel);
   status = status == DEA_OK ? add_rows(ctx, picture, panel) : status;
   snprintf(panel->x_label, sizeof panel->x_label, "%s", picture->x_label);
@@ -115,7 +114,6 @@ dea_status dea_weibull_draw(struct dea_context *ctx, const struct dea_weibull_pi
   if (picture->logarithmic) {
     logarithmic_axis(picture, panel);
   }
-  panel->key = "top left";
   dea_panel_even_tics(panel, 7);
   return dea_plot_folder_draw(&folder, dea_plot_folder_add(&folder, plot, status));
 }

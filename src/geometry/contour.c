@@ -1,6 +1,7 @@
 #include "geometry/contour.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -207,4 +208,19 @@ bool dea_contour_inside(const struct dea_contour *contour, double x_m, double y_
     turn += turn_along(&piece, x_m, y_m);
   }
   return fabs(turn) > pi;
+}
+
+bool dea_contour_is_circle(const struct dea_contour *contour, double centre[2], double *radius)
+{
+  const struct dea_piece first = dea_contour_piece(contour, 0);
+  for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
+    const struct dea_piece piece = dea_contour_piece(contour, i);
+    if (!piece.arc || hypot(piece.centre[0] - first.centre[0], piece.centre[1] - first.centre[1]) >
+                          1e-9 * first.radius_m) {
+      return false;
+    }
+  }
+  memcpy(centre, first.centre, sizeof first.centre);
+  *radius = first.radius_m;
+  return true;
 }

@@ -68,6 +68,9 @@ double dea_contour_distance_m(const struct dea_contour *contour, const double x_
 /* Whether a point, not on it, lies inside a closed contour. */
 bool dea_contour_inside(const struct dea_contour *contour, double x_m, double y_m);
 
+/* Whether a closed contour is one circle, and its centre and radius. */
+bool dea_contour_is_circle(const struct dea_contour *contour, double centre[2], double *radius);
+
 /* The contour at a distance outwards (< 0: inwards), with round corners where it opens. Pieces keep
  * their places. out: room for 2 count vertices. false when a piece vanishes: *at is its number. */
 bool dea_contour_offset(const struct dea_contour *contour, double distance_m,

@@ -18,32 +18,34 @@ static double nice_above(double least)
   return 10.0 * power;
 }
 
-struct range {
-  double low, high;
-};
-
-/* Of series of an axis that are secondary, or that are not. */
-static struct range range_of(const struct dea_panel *panel, bool right, bool secondary)
+void dea_range_widen(struct dea_range *range, double value)
 {
-  struct range range = {INFINITY, -INFINITY};
+  if (isfinite(value)) {
+    range->low = fmin(range->low, value);
+    range->high = fmax(range->high, value);
+  }
+}
+
+/* Of series that are secondary, or that are not. */
+static struct dea_range range_of(const struct dea_panel *panel, bool secondary)
+{
+  struct dea_range range = DEA_RANGE_EMPTY;
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
-    for (size_t i = 0;
-         i < series->count && series->right == right && series->secondary == secondary; i++) {
-      double x = series->values[i], y = series->values[series->count + i];
-      if (isfinite(y) && !(x < panel->x_min) && !(x > panel->x_max)) {
-        range.low = fmin(range.low, y);
-        range.high = fmax(range.high, y);
+    for (size_t i = 0; i < series->count && series->secondary == secondary; i++) {
+      double x = series->values[i];
+      if (!(x < panel->x_min) && !(x > panel->x_max)) {
+        dea_range_widen(&range, series->values[series->count + i]);
       }
     }
   }
   return range;
 }
 
-bool dea_panel_range(const struct dea_panel *panel, bool right, double *low, double *high)
+bool dea_panel_range(const struct dea_panel *panel, double *low, double *high)
 {
   static const double beyond = 0.5;
-  struct range own = range_of(panel, right, false), secondary = range_of(panel, right, true);
+  struct dea_range own = range_of(panel, false), secondary = range_of(panel, true);
   double more = own.high > own.low ? beyond * (own.high - own.low) : INFINITY;
   *low = fmin(own.low, fmax(secondary.low, own.low - more));
   *high = fmax(own.high, fmin(secondary.high, own.high + more));
@@ -56,9 +58,9 @@ bool dea_panel_range(const struct dea_panel *panel, bool right, double *low, dou
 
 void dea_panel_limit(struct dea_panel *panel)
 {
-  struct range secondary = range_of(panel, false, true);
+  struct dea_range secondary = range_of(panel, true);
   double low, high;
-  if (!dea_panel_range(panel, false, &low, &high) || !(high > low)) {
+  if (!dea_panel_range(panel, &low, &high) || !(high > low)) {
     return;
   }
   double step = nice_above((high - low) / 7);
@@ -73,19 +75,17 @@ void dea_panel_limit(struct dea_panel *panel)
 void dea_panel_voltage_axis(struct dea_panel *panel)
 {
   static const double noise = 0.01; // of a monitor about 0, of the span
-  double lowest = 0.0, largest = 0.0;
+  struct dea_range range = {0.0, 0.0};
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
     for (size_t i = 0; i < series->count; i++) {
-      if (isfinite(series->values[series->count + i])) {
-        lowest = fmin(lowest, series->values[i]);
-        largest = fmax(largest, series->values[i]);
-      }
+      dea_range_widen(&range,
+                      isfinite(series->values[series->count + i]) ? series->values[i] : NAN);
     }
   }
-  const double least = noise * (largest - lowest);
-  panel->x_min = lowest < -least ? lowest : 0.0;
-  panel->x_max = largest > least ? largest : 0.0;
+  const double least = noise * (range.high - range.low);
+  panel->x_min = range.low < -least ? range.low : 0.0;
+  panel->x_max = range.high > least ? range.high : 0.0;
   if (!(panel->x_max > panel->x_min)) { // gnuplot has no axis from 0 to 0
     panel->x_max = 1.0;
   }
@@ -95,16 +95,15 @@ void dea_panel_voltage_axis(struct dea_panel *panel)
 
 void dea_panel_begin_at_zero(struct dea_panel *panel)
 {
-  double low = 0.0, high = 0.0;
+  struct dea_range range = {0.0, 0.0};
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
     for (size_t i = 0; i < series->count; i++) {
-      low = fmin(low, series->values[series->count + i]); // not NAN
-      high = fmax(high, series->values[series->count + i]);
+      dea_range_widen(&range, series->values[series->count + i]);
     }
   }
-  if (low > -0.08 * high) {
-    panel->y_min = fmin(1.2 * low, -0.02 * high);
+  if (range.low > -0.08 * range.high) {
+    panel->y_min = fmin(1.2 * range.low, -0.02 * range.high);
   }
 }
 
@@ -112,7 +111,7 @@ void dea_panel_even_tics(struct dea_panel *panel, int most)
 {
   static const char *const formats[] = {"%.0f", "%.1f", "%.2f", "%.3f", "%.4f"};
   double low, high;
-  if (!dea_panel_range(panel, false, &low, &high) || !(high > low)) {
+  if (!dea_panel_range(panel, &low, &high) || !(high > low)) {
     return;
   }
   low = isfinite(panel->y_min) ? fmin(low, panel->y_min) : low; // what is shown may be more

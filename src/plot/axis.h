@@ -1,7 +1,16 @@
 /* An axis of a drawing: what range it shows, where its tics are. */
 #pragma once
 
+#include <math.h>
 #include <stdbool.h>
+
+struct dea_range {
+  double low, high;
+};
+
+#define DEA_RANGE_EMPTY ((struct dea_range){INFINITY, -INFINITY})
+/* Takes a value in, where it is finite. */
+void dea_range_widen(struct dea_range *range, double value);
 
 struct dea_axis {
   double low, high; // of the values; low < high

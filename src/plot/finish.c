@@ -1,10 +1,10 @@
 #include "plot/finish.h"
 
 #include "base/file.h"
+#include "base/html.h"
 #include "base/write_file.h"
 #include "plot/script.h"
 
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -40,16 +40,6 @@ static void replace(struct copy *copy, const char *at, const char *end)
   copy->done = end;
 }
 
-static void add_title(struct dea_text *out, const char *caption)
-{
-  dea_text_add(out, "<title>");
-  for (const char *c = caption; *c != '\0'; c++) {
-    const char *entity = dea_entity_name((unsigned char)*c);
-    dea_text_add(out, entity != NULL ? "%s" : "%.1s", entity != NULL ? entity : c);
-  }
-  dea_text_add(out, "</title>");
-}
-
 /* A facet with a fill that is not half transparent. */
 static void replace_facet(struct copy *copy, const char *at)
 {
@@ -74,7 +64,7 @@ static void replace_at(struct copy *copy, const char *at, const char *caption)
     replace(copy, at, end); // browsers show it where the pointer rests
   } else if (between(at, "<title>Gnuplot", "</title>", &length, &end) != NULL) {
     replace(copy, at, end);
-    add_title(&copy->out, caption);
+    dea_html_element(&copy->out, "title", caption);
   } else if (between(at, "font-family=\"" DEA_SCRIPT_FONT, "\"", &length, &end) != NULL) {
     replace(copy, at, end);
     dea_text_add(&copy->out, "font-family=\"" DEA_SCRIPT_FONT ", Verdana, sans-serif\"");
@@ -104,30 +94,14 @@ dea_status dea_svg_finish(struct dea_context *ctx, const char *svg, const char *
 
 // PNG --------------------------------------------------------------------------------------------
 
-/* The check of a chunk: CRC-32 of ISO 3309, as in Annex D of the PNG specification. */
-static uint32_t check_of(const unsigned char *bytes, size_t count)
-{
-  uint32_t check = 0xffffffff;
-  for (size_t i = 0; i < count; i++) {
-    check ^= bytes[i];
-    for (int bit = 0; bit < 8; bit++) {
-      check = check & 1 ? 0xedb88320 ^ (check >> 1) : check >> 1;
-    }
-  }
-  return ~check;
-}
+/* The chunk pHYs of the PNG specification: 11811 dots a metre along both axes, and its check. */
+static const char resolution[] = "\0\0\0\11pHYs\0\0\x2e\x23\0\0\x2e\x23\1\x78\xa5\x3f\x76";
+enum { CHUNK = sizeof resolution - 1 };
 
-static void write_u32(unsigned char *to, uint32_t value)
+dea_status dea_png_finish(struct dea_context *ctx, const char *bytes, size_t length, char **out,
+                          size_t *out_length)
 {
-  for (int i = 0; i < 4; i++) {
-    to[i] = (unsigned char)(value >> (24 - 8 * i));
-  }
-}
-
-dea_status dea_png_finish(struct dea_context *ctx, const char *bytes, size_t length,
-                          double dots_per_m, char **out, size_t *out_length)
-{
-  enum { HEAD = 8 + 25, CHUNK = 21 }; // signature with IHDR; pHYs
+  enum { HEAD = 8 + 25 }; // signature with IHDR
   static const char signature[] = "\211PNG\r\n\032\n";
   bool png = length > HEAD && memcmp(bytes, signature, 8) == 0;
   bool has = png && length > HEAD + 8 && memcmp(bytes + HEAD + 4, "pHYs", 4) == 0;
@@ -138,13 +112,8 @@ dea_status dea_png_finish(struct dea_context *ctx, const char *bytes, size_t len
     memcpy(*out, bytes, length);
     return DEA_OK;
   }
-  unsigned char chunk[CHUNK] = {0, 0, 0, 9, 'p', 'H', 'Y', 's'};
-  write_u32(chunk + 8, (uint32_t)(dots_per_m + 0.5));
-  write_u32(chunk + 12, (uint32_t)(dots_per_m + 0.5));
-  chunk[16] = 1; // the unit is the metre
-  write_u32(chunk + 17, check_of(chunk + 4, 13));
   memcpy(*out, bytes, HEAD);
-  memcpy(*out + HEAD, chunk, CHUNK);
+  memcpy(*out + HEAD, resolution, CHUNK);
   memcpy(*out + HEAD + CHUNK, bytes + HEAD, length - HEAD);
   return DEA_OK;
 }
@@ -173,18 +142,25 @@ static dea_status read_named(struct dea_context *ctx, const char *directory, con
   return dea_path_exists(*path) ? dea_file_read(ctx, *path, FILE_MAX, bytes, length) : DEA_OK;
 }
 
+/* Completes one picture. A gnuplot that ends well may have drawn nothing, on a full disk or as
+ * something else of that name. */
 static dea_status finish_one(struct dea_context *ctx, const char *pictures, const char *name,
-                             const char *caption, bool svg)
+                             const char *outcome, const char *caption, bool wanted)
 {
   char *path, *bytes, *done = NULL;
   size_t length = 0;
-  dea_status status = read_named(ctx, pictures, name, svg ? "svg" : "png", &path, &bytes, &length);
-  if (status == DEA_OK && bytes != NULL) {
-    status = svg ? dea_svg_finish(ctx, bytes, caption, &done)
-                 : dea_png_finish(ctx, bytes, length, DEA_SCRIPT_PNG_DOTS_PER_M, &done, &length);
+  dea_status status = read_named(ctx, pictures, name, outcome, &path, &bytes, &length);
+  if (status == DEA_OK && wanted && length == 0) {
+    status = dea_fail(ctx, DEA_E_TOOL, "gnuplot has drawn nothing into %s", dea_path_name(path));
+  }
+  if (status == DEA_OK && bytes != NULL && strcmp(outcome, "svg") == 0) {
+    status = dea_svg_finish(ctx, bytes, caption, &done);
+    length = done != NULL ? strlen(done) : 0;
+  } else if (status == DEA_OK && bytes != NULL && strcmp(outcome, "png") == 0) {
+    status = dea_png_finish(ctx, bytes, length, &done, &length);
   }
   if (status == DEA_OK && done != NULL) {
-    status = dea_file_write(ctx, path, done, svg ? strlen(done) : length);
+    status = dea_file_write(ctx, path, done, length);
   }
   dea_free(ctx, done);
   dea_free(ctx, bytes);
@@ -192,44 +168,21 @@ static dea_status finish_one(struct dea_context *ctx, const char *pictures, cons
   return status;
 }
 
-/* A gnuplot that ends well and has drawn nothing, on a full disk or as something else of that name.
- */
-static dea_status check_drawn(struct dea_context *ctx, const char *pictures, const char *name,
-                              const char *script, const struct dea_plot_format *format)
-{
-  static const char *const outcomes[] = {"svg", "pdf", "png", "gif"};
-  const bool all = strstr(script, "in formats]") != NULL; // else it is an animation
-  const bool wanted[] = {all && format->svg, all && format->pdf, all && format->png, !all};
-  dea_status status = DEA_OK;
-  for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0] && status == DEA_OK; i++) {
-    char file[128], byte;
-    size_t length;
-    snprintf(file, sizeof file, "%.119s.%s", name, outcomes[i]);
-    char *path = dea_path_join(ctx, pictures, file);
-    DEA_TRY_MEMORY(path != NULL);
-    if (wanted[i] && (!dea_file_head(path, &byte, 1, &length) || length == 0)) {
-      status = dea_fail(ctx, DEA_E_TOOL, "gnuplot has drawn nothing into %s", file);
-    }
-    dea_free(ctx, path);
-  }
-  return status;
-}
-
 dea_status dea_picture_finish(struct dea_context *ctx, const char *pictures, const char *scripts,
                               const char *name, const struct dea_plot_format *format)
 {
-  char caption[400], *path, *script;
+  static const char *const outcomes[] = {"svg", "pdf", "png", "gif"};
+  char caption[400], *path, *bytes;
   size_t length;
-  dea_status status = read_named(ctx, scripts, name, "gp", &path, &script, &length);
-  if (status == DEA_OK) {
-    status = check_drawn(ctx, pictures, name, script != NULL ? script : "", format);
+  dea_status status = read_named(ctx, scripts, name, "gp", &path, &bytes, &length);
+  const char *script = bytes != NULL ? bytes : "";
+  const bool all = strstr(script, "in formats]") != NULL; // else it is an animation
+  const bool wanted[] = {all && format->svg, all && format->pdf, all && format->png, !all};
+  read_caption(script, name, caption, sizeof caption);
+  for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0] && status == DEA_OK; i++) {
+    status = finish_one(ctx, pictures, name, outcomes[i], caption, wanted[i]);
   }
-  if (status == DEA_OK) {
-    read_caption(script != NULL ? script : "", name, caption, sizeof caption);
-    status = finish_one(ctx, pictures, name, caption, true);
-  }
-  status = status == DEA_OK ? finish_one(ctx, pictures, name, caption, false) : status;
-  dea_free(ctx, script);
+  dea_free(ctx, bytes);
   dea_free(ctx, path);
   return status;
 }

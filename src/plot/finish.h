@@ -14,8 +14,8 @@ dea_status dea_picture_finish(struct dea_context *ctx, const char *pictures, con
  * (dea_free). */
 dea_status dea_svg_finish(struct dea_context *ctx, const char *svg, const char *caption,
                           char **out);
-/* A PNG file with its resolution, so that documents show it in the size that was asked for. One
- * that has a resolution, or bytes that are no PNG, come back as they are. *out with *out_length
- * bytes: owned by the caller (dea_free). */
-dea_status dea_png_finish(struct dea_context *ctx, const char *bytes, size_t length,
-                          double dots_per_m, char **out, size_t *out_length);
+/* A PNG file with its resolution, 300 dots an inch, so that documents show it in the size that was
+ * asked for. One that has a resolution, or bytes that are no PNG, come back as they are. *out with
+ * *out_length bytes: owned by the caller (dea_free). */
+dea_status dea_png_finish(struct dea_context *ctx, const char *bytes, size_t length, char **out,
+                          size_t *out_length);

@@ -1,7 +1,8 @@
 /* Drawing by a gnuplot process. */
-#define _POSIX_C_SOURCE 200809L // unlinkat, renameat, dirfd
+#define _POSIX_C_SOURCE 200809L // sysconf, getpid
 #include "plot/plot.h"
 
+#include "base/arena.h"
 #include "base/file.h"
 #include "base/program.h"
 #include "base/write_file.h"
@@ -9,29 +10,12 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 enum { DRAWERS_MAX = 4, SCRIPT_MAX = 80 };
-
-static dea_status launch(struct dea_context *ctx, char *const argv[], const char *directory,
-                         struct dea_program *out)
-{
-  int reason = dea_program_start(argv, directory, false, out);
-  if (reason == ENOENT) {
-    return dea_fail(ctx, DEA_E_TOOL,
-                    "gnuplot is not installed (on Debian: apt install gnuplot-nox); the scripts "
-                    "and data of the figures are in %s and can be drawn later",
-                    directory);
-  }
-  if (reason != 0) {
-    return dea_fail(ctx, DEA_E_TOOL, "gnuplot cannot be started: %s", strerror(reason));
-  }
-  return DEA_OK;
-}
 
 /* Waits for its end; also after an interruption, so that figures of what there is are drawn. */
 static dea_status finish(struct dea_context *ctx, const struct dea_program *drawer,
@@ -58,62 +42,68 @@ static size_t drawer_count(size_t figures)
   return wanted < most ? wanted : most;
 }
 
-/* Moves all files of a folder into the one above it, or removes them, and removes the folder. */
-static dea_status empty_folder(struct dea_context *ctx, const char *from, const char *to, bool keep)
+/* Moves a file of a folder into another one. */
+static dea_status move(struct dea_context *ctx, const char *from, const char *name, const char *to)
+{
+  char *path = dea_path_join(ctx, from, name), *target = dea_path_join(ctx, to, name);
+  dea_status status = path != NULL && target != NULL ? DEA_OK : DEA_E_MEMORY;
+  status = status == DEA_OK ? dea_path_check_target(ctx, target) : status;
+  if (status == DEA_OK && rename(path, target) != 0) {
+    status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", target, strerror(errno));
+  }
+  dea_free(ctx, path);
+  dea_free(ctx, target);
+  return status;
+}
+
+/* The same of all its files. */
+static dea_status move_all(struct dea_context *ctx, const char *from, const char *to)
 {
   dea_status status = DEA_OK;
   DIR *folder = opendir(from);
-  for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
-    if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) {
-      continue;
+  for (struct dirent *entry;
+       folder != NULL && status == DEA_OK && (entry = readdir(folder)) != NULL;) {
+    if (entry->d_name[0] != '.') {
+      status = move(ctx, from, entry->d_name, to);
     }
-    if (!keep || status != DEA_OK) {
-      unlinkat(dirfd(folder), entry->d_name, 0);
-      continue;
-    }
-    char *path = dea_path_join(ctx, to, entry->d_name);
-    if (path == NULL) {
-      status = DEA_E_MEMORY;
-      unlinkat(dirfd(folder), entry->d_name, 0);
-    } else if (dea_path_check_target(ctx, path) != DEA_OK) {
-      status = dea_context_status(ctx);
-      unlinkat(dirfd(folder), entry->d_name, 0);
-    } else if (renameat(dirfd(folder), entry->d_name, AT_FDCWD, path) != 0) {
-      status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(errno));
-      unlinkat(dirfd(folder), entry->d_name, 0);
-    }
-    dea_free(ctx, path);
   }
   if (folder != NULL) {
     closedir(folder);
   }
-  rmdir(from);
   return status;
 }
 
 /* Starts a gnuplot for the figures first, first + stride, ... */
-static dea_status launch_some(const struct dea_plot_folder *f, char *folder, size_t first,
-                              size_t stride, struct dea_program *out)
+static dea_status launch(const struct dea_plot_folder *f, char *folder, size_t first, size_t stride,
+                         struct dea_program *out)
 {
-  char **argv = dea_alloc(f->ctx, f->count + 5, sizeof *argv);
-  char *scripts = dea_alloc(f->ctx, f->count, SCRIPT_MAX);
-  dea_status status = DEA_E_MEMORY;
-  if (argv != NULL && scripts != NULL) {
-    char program[] = "gnuplot", defaults[] = "-d", execute[] = "-e";
-    size_t n = 4;
-    argv[0] = program;
-    argv[1] = defaults; // without the user's start-up files
-    argv[2] = execute;
-    argv[3] = folder;
-    for (size_t i = first; i < f->count; i += stride) {
-      snprintf(scripts + SCRIPT_MAX * i, SCRIPT_MAX, "%s.gp", f->names[i]);
-      argv[n++] = scripts + SCRIPT_MAX * i;
+  // without the user's start-up files
+  char program[] = "gnuplot", defaults[] = "-d", execute[] = "-e";
+  struct dea_arena memory = {.ctx = f->ctx};
+  char **argv = dea_arena_alloc(&memory, f->count + 5, sizeof *argv);
+  char *scripts = dea_arena_alloc(&memory, f->count, SCRIPT_MAX);
+  int reason = ENOMEM;
+  if (!memory.failed) {
+    char *const start[] = {program, defaults, execute, folder};
+    size_t n = sizeof start / sizeof start[0];
+    memcpy(argv, start, sizeof start);
+    for (size_t i = first; i < f->count; i += stride, n++) {
+      argv[n] = scripts + SCRIPT_MAX * i;
+      snprintf(argv[n], SCRIPT_MAX, "%s.gp", f->names[i]);
     }
-    status = launch(f->ctx, argv, f->path, out);
+    reason = dea_program_start(argv, f->path, false, out);
   }
-  dea_free(f->ctx, scripts);
-  dea_free(f->ctx, argv);
-  return status;
+  const dea_status status = dea_arena_status(&memory);
+  dea_arena_free(&memory);
+  if (status != DEA_OK || reason == 0) {
+    return status;
+  }
+  return reason == ENOENT
+             ? dea_fail(f->ctx, DEA_E_TOOL,
+                        "gnuplot is not installed (on Debian: apt install gnuplot-nox); the "
+                        "scripts and data of the figures are in %s and can be drawn later",
+                        f->path)
+             : dea_fail(f->ctx, DEA_E_TOOL, "gnuplot cannot be started: %s", strerror(reason));
 }
 
 static dea_status draw(const struct dea_plot_folder *f, const char *drawing)
@@ -124,7 +114,7 @@ static dea_status draw(const struct dea_plot_folder *f, const char *drawing)
   dea_text_add(&folder, "dea_folder = \"%s/\"", dea_path_name(drawing));
   dea_status status = folder.failed ? DEA_E_MEMORY : DEA_OK;
   while (status == DEA_OK && running < wanted) {
-    status = launch_some(f, folder.data, running, wanted, &drawers[running]);
+    status = launch(f, folder.data, running, wanted, &drawers[running]);
     running += status == DEA_OK;
   }
   for (size_t i = 0; i < running; i++) { // all of them, also after a failure
@@ -148,11 +138,8 @@ static dea_status draw_all(const struct dea_plot_folder *f)
     for (size_t i = 0; i < f->count && status == DEA_OK; i++) {
       status = dea_picture_finish(f->ctx, drawing, f->path, f->names[i], f->format);
     }
-    if (status == DEA_OK) {
-      status = empty_folder(f->ctx, drawing, f->path, true);
-    } else {
-      empty_folder(f->ctx, drawing, f->path, false);
-    }
+    status = status == DEA_OK ? move_all(f->ctx, drawing, f->path) : status;
+    dea_folder_remove_temporary(drawing);
   }
   dea_free(f->ctx, drawing);
   return status;

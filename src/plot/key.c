@@ -1,25 +1,14 @@
 /* Where the key of a panel stands: in a corner that no curve crosses, or else above all curves. */
+#include "plot/axis.h"
 #include "plot/plot.h"
 
 #include <math.h>
 
 /* Share of the panel that the key takes, a little more than it needs at 85 mm. */
-static const double key_width = 0.48, key_width_two_axes = 0.6, key_line_height = 0.075;
+static const double key_width = 0.48, key_line_height = 0.075;
 enum { PIECES = 8 }; // of a line between two points
 
-struct range {
-  double low, high;
-};
-
-static void widen(struct range *range, double value)
-{
-  if (isfinite(value)) {
-    range->low = fmin(range->low, value);
-    range->high = fmax(range->high, value);
-  }
-}
-
-static double share(const struct range *range, double value)
+static double share(const struct dea_range *range, double value)
 {
   return range->high > range->low ? (value - range->low) / (range->high - range->low) : 0.5;
 }
@@ -31,8 +20,8 @@ struct box {
 };
 
 /* Whether the line through the points of a series comes into the box. */
-static bool crosses(const struct dea_series *series, const struct range *x, const struct range *y,
-                    const struct box *box)
+static bool crosses(const struct dea_series *series, const struct dea_range *x,
+                    const struct dea_range *y, const struct box *box)
 {
   size_t n = series->count;
   for (size_t i = 0; i + 1 < n; i++) {
@@ -69,7 +58,7 @@ void dea_panel_place_key(struct dea_panel *panel)
                  {"bottom right", false, false},
                  {"bottom left", true, false},
                  {"top right", false, true}};
-  struct range x = {INFINITY, -INFINITY}, y[2] = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
+  struct dea_range x = DEA_RANGE_EMPTY, y;
   double lines = (panel->dashed != NULL) ? 1.6 : 0.6;
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
@@ -77,28 +66,24 @@ void dea_panel_place_key(struct dea_panel *panel)
     for (size_t i = 0; i < series->count; i++) {
       shown = shown || isfinite(series->values[series->count + i]);
       bool inside = !(series->values[i] < panel->x_min) && !(series->values[i] > panel->x_max);
-      widen(&x, inside ? series->values[i] : NAN);
+      dea_range_widen(&x, inside ? series->values[i] : NAN);
     }
     lines += shown && series->title[0] != '\0';
   }
-  for (int right = 0; right < 2; right++) {
-    dea_panel_range(panel, right == 1, &y[right].low, &y[right].high);
-  }
-  widen(&y[0], panel->y_min);
-  widen(&y[0], panel->y_max);
-  struct box box = {panel->y2_label[0] != '\0' ? key_width_two_axes : key_width,
-                    fmin(lines * key_line_height, 0.6), true, true};
+  dea_panel_range(panel, &y.low, &y.high);
+  dea_range_widen(&y, panel->y_min);
+  dea_range_widen(&y, panel->y_max);
+  struct box box = {key_width, fmin(lines * key_line_height, 0.6), true, true};
   for (size_t c = 0; c < sizeof corners / sizeof corners[0]; c++) {
     bool crossed = false;
     box.left = corners[c].left;
     box.top = corners[c].top;
     for (size_t s = 0; s < panel->series_count && !crossed; s++) {
-      const struct dea_series *series = &panel->series[s];
-      crossed = crosses(series, &x, &y[series->right], &box);
+      crossed = crosses(&panel->series[s], &x, &y, &box);
     }
     for (size_t m = 0; m < panel->mark_count && !crossed; m++) {
-      double at = share(&y[0], panel->marks[m].at);
-      crossed = !panel->marks[m].vertical && (box.top ? at > 1 - box.height : at < box.height);
+      double at = share(&y, panel->marks[m].at);
+      crossed = box.top ? at > 1 - box.height : at < box.height;
     }
     if (!crossed) {
       panel->key = corners[c].name;
@@ -106,8 +91,5 @@ void dea_panel_place_key(struct dea_panel *panel)
     }
   }
   panel->key = "top left";
-  panel->y_max = y[0].low + (y[0].high - y[0].low) / (1 - box.height);
-  if (y[1].high > y[1].low) {
-    panel->y2_max = y[1].low + (y[1].high - y[1].low) / (1 - box.height);
-  }
+  panel->y_max = y.low + (y.high - y.low) / (1 - box.height);
 }

@@ -15,9 +15,8 @@ dea_status dea_plot_create(struct dea_context *ctx, const char *name, const char
   (*out)->second_height = 1.0;
   for (int i = 0; i < DEA_PLOT_PANELS_MAX; i++) {
     struct dea_panel *panel = &(*out)->panels[i];
-    panel->x_min = panel->x_max = panel->y_min = panel->y_max = panel->y2_max = NAN;
+    panel->x_min = panel->x_max = panel->y_min = panel->y_max = NAN;
     panel->key = "top left";
-    panel->y2_colour = DEA_BLACK;
   }
   return DEA_OK;
 }
@@ -75,11 +74,11 @@ dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, si
   return DEA_OK;
 }
 
-void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text)
+void dea_panel_mark(struct dea_panel *panel, double at, const char *text)
 {
   if (panel->mark_count < DEA_PANEL_MARKS_MAX && isfinite(at)) {
     struct dea_mark *mark = &panel->marks[panel->mark_count++];
-    *mark = (struct dea_mark){.vertical = vertical, .at = at};
+    mark->at = at;
     dea_label_escape(text, mark->text, sizeof mark->text);
   }
 }

@@ -41,7 +41,6 @@ struct dea_series {
   enum dea_series_style style;
   enum dea_colour colour;
   int marker;
-  bool right;     // on the right axis
   bool secondary; // what is not to be trusted, or only a bound: does not set the axis
   bool to_top;    // a band up to the top of the panel, wherever its upper edge lies
   double width;   // of the line over that of its style; 0: 1
@@ -49,9 +48,8 @@ struct dea_series {
   double *values; // [3][count]: x, y, error; owned
 };
 
-/* A thin line across the panel with a word on it. */
+/* A thin line across the panel at y = at with a word on it. */
 struct dea_mark {
-  bool vertical; // at x = at; else at y = at
   double at;
   char text[DEA_LABEL_SIZE]; // gnuplot's enhanced text
 };
@@ -59,14 +57,13 @@ struct dea_mark {
 /* Labels and words are gnuplot's enhanced text in UTF-8. Limits that are NAN are left to gnuplot.
  */
 struct dea_panel {
-  char x_label[DEA_LABEL_SIZE], y_label[DEA_LABEL_SIZE], y2_label[DEA_LABEL_SIZE];
-  double x_min, x_max, y_min, y_max, y2_max;
+  char x_label[DEA_LABEL_SIZE], y_label[DEA_LABEL_SIZE];
+  double x_min, x_max, y_min, y_max;
   bool logarithmic;     // both axes
   bool logarithmic_x;   // the x axis
   const char *key;      // "top left", "above ..."; static storage
-  double y_step;        // between tics of the left axis; 0: gnuplot's choice
+  double y_step;        // between tics of the y axis; 0: gnuplot's choice
   const char *y_format; // of the tic labels, "%.1f"; NULL: gnuplot's; static storage
-  enum dea_colour y2_colour;
   const char *sides[2]; // words left and right of x = 0, which then is marked; NULL: none; static
   const char *dashed;   // key entry: what dashed parts of curves are; NULL: there are none; static
   size_t series_count, mark_count;
@@ -90,25 +87,25 @@ void dea_plot_destroy(struct dea_context *ctx, struct dea_plot *plot);
 dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
                          enum dea_series_style style, enum dea_colour colour, const char *title,
                          struct dea_series **out);
-/* The same with title, style, colour, marker and right of another series. */
+/* The same with title, style, colour and marker of another series. */
 dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, size_t count,
                             const struct dea_series *look, struct dea_series **out);
 /* Takes all series away. */
 void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel);
 /* Adds a mark; one too many is left out. text is plain text. */
-void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const char *text);
-/* Range of the values of the left or the right axis, where x is within the panel's limits. Values
- * of series that are secondary widen it by half of what the others span at most, to either side.
- * False when there are no values. */
-bool dea_panel_range(const struct dea_panel *panel, bool right, double *low, double *high);
-/* Limits of the left axis, where it has none, that leave out what dea_panel_range leaves out. */
+void dea_panel_mark(struct dea_panel *panel, double at, const char *text);
+/* Range of the values, where x is within the panel's limits. Values of series that are secondary
+ * widen it by half of what the others span at most, to either side. False when there are no values.
+ */
+bool dea_panel_range(const struct dea_panel *panel, double *low, double *high);
+/* Limits of the y axis, where it has none, that leave out what dea_panel_range leaves out. */
 void dea_panel_limit(struct dea_panel *panel);
-/* Voltage axis over the voltages of the panel's series and 0, and its label; the left axis as by
+/* Voltage axis over the voltages of the panel's series and 0, and its label; the y axis as by
  * dea_panel_limit. */
 void dea_panel_voltage_axis(struct dea_panel *panel);
-/* Has the left axis begin just below 0 where only noise is below it. */
+/* Has the y axis begin just below 0 where only noise is below it. */
 void dea_panel_begin_at_zero(struct dea_panel *panel);
-/* At most about `most` tics on the left axis, all with the same number of decimals. */
+/* At most about `most` tics on the y axis, all with the same number of decimals. */
 void dea_panel_even_tics(struct dea_panel *panel, int most);
 /* Puts the key into a corner that the panel's series leave free, or makes room above them; to be
  * called when all series are there. */

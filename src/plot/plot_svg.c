@@ -8,37 +8,25 @@
 #include <string.h>
 
 /* Measures of a drawing in its own units: about pixels. */
-enum { WIDTH = 640, LEFT = 66, RIGHT = 18, RIGHT_AXIS = 76, TOP = 12, BOTTOM = 46, HEIGHT = 330 };
+enum { WIDTH = 640, LEFT = 66, RIGHT = 18, TOP = 12, BOTTOM = 46, HEIGHT = 330 };
 
 struct view {
-  struct dea_axis x, y, y2;
+  struct dea_axis x, y;
   double top, bottom, left, right;
 };
 
-struct range {
-  double low, high;
-};
-
-static void widen(struct range *range, double value, bool logarithmic)
+/* Ranges of x and y; a band counts by its lower edge. */
+static void find_ranges(const struct dea_panel *panel, struct dea_range *x, struct dea_range *y)
 {
-  if (isfinite(value) && (!logarithmic || value > 0)) {
-    range->low = fmin(range->low, value);
-    range->high = fmax(range->high, value);
-  }
-}
-
-/* Ranges of x and of the two axes upwards; a band counts by its lower edge. */
-static void find_ranges(const struct dea_panel *panel, struct range *x, struct range y[2])
-{
-  *x = y[0] = y[1] = (struct range){INFINITY, -INFINITY};
+  const bool log_x = panel->logarithmic || panel->logarithmic_x;
+  *x = *y = DEA_RANGE_EMPTY;
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
     for (size_t i = 0; i < series->count; i++) {
-      double at_y = series->values[series->count + i];
-      bool inside = !(series->values[i] > panel->x_max) && !(series->values[i] < panel->x_min);
-      if (isfinite(at_y) && inside) {
-        widen(x, series->values[i], panel->logarithmic || panel->logarithmic_x);
-        widen(&y[series->right], at_y, panel->logarithmic);
+      double at_x = series->values[i], at_y = series->values[series->count + i];
+      if (isfinite(at_y) && !(at_x > panel->x_max) && !(at_x < panel->x_min)) {
+        dea_range_widen(x, log_x && !(at_x > 0) ? NAN : at_x);
+        dea_range_widen(y, panel->logarithmic && !(at_y > 0) ? NAN : at_y);
       }
     }
   }
@@ -46,32 +34,30 @@ static void find_ranges(const struct dea_panel *panel, struct range *x, struct r
 
 static struct view build_view(const struct dea_panel *panel, double top, double height)
 {
-  struct range x, y[2];
-  find_ranges(panel, &x, y);
+  struct dea_range x, y;
+  find_ranges(panel, &x, &y);
   double limits_x[2] = {panel->x_min, panel->x_max};
   bool logarithmic_x = panel->logarithmic || panel->logarithmic_x;
   if (!isfinite(panel->x_min) && !logarithmic_x) { // radii and voltages fill the width
     limits_x[0] = x.high >= x.low && x.high > x.low ? x.low : NAN;
     limits_x[1] = isfinite(panel->x_max) ? panel->x_max : x.high > x.low ? x.high : NAN;
   }
-  for (int k = 0; k < 2 && !panel->logarithmic; k++) { // without what is secondary
-    dea_panel_range(panel, k == 1, &y[k].low, &y[k].high);
+  if (!panel->logarithmic) { // without what is secondary
+    dea_panel_range(panel, &y.low, &y.high);
   }
-  const double open[2] = {NAN, NAN}, floor_only[2] = {panel->y_min, NAN};
-  bool right = panel->y2_label[0] != '\0';
+  const double floor_only[2] = {panel->y_min, NAN};
   struct view v = {
       .x = dea_axis_create(x.low, x.high, limits_x, logarithmic_x, 9),
-      .y = dea_axis_create(y[0].low, y[0].high, floor_only, panel->logarithmic, 7),
-      .y2 = dea_axis_create(y[1].low, y[1].high, open, false, 7),
+      .y = dea_axis_create(y.low, y.high, floor_only, panel->logarithmic, 7),
       .top = top,
       .bottom = top + height,
       .left = LEFT,
-      .right = WIDTH - (right ? RIGHT_AXIS : RIGHT),
+      .right = WIDTH - RIGHT,
   };
   v.x.at_low = v.left;
   v.x.at_high = v.right;
-  v.y.at_low = v.y2.at_low = v.bottom;
-  v.y.at_high = v.y2.at_high = v.top;
+  v.y.at_low = v.bottom;
+  v.y.at_high = v.top;
   return v;
 }
 
@@ -85,11 +71,18 @@ static void add_tic_label(struct dea_text *out, double x, double y, const char *
                number[0] == '-' ? "\342\210\222" : "", number + (number[0] == '-'));
 }
 
+static void add_label(struct dea_text *out, double x, double y, const char *anchor,
+                      const char *label)
+{
+  dea_text_add(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor);
+  dea_html_label(out, label, DEA_LABEL_SVG);
+  dea_text_add(out, "</text>");
+}
+
 static void add_axes(struct dea_text *out, const struct dea_panel *panel, const struct view *v,
                      bool last)
 {
   double value;
-  bool right = panel->y2_label[0] != '\0';
   dea_text_add(out, "<g class=\"grid\"><path d=\"");
   for (int i = 0; dea_axis_tic(&v->x, i, &value); i++) {
     dea_text_add(out, "M%.1f %.1fV%.1f", dea_axis_place(&v->x, value), v->bottom, v->top);
@@ -104,23 +97,14 @@ static void add_axes(struct dea_text *out, const struct dea_panel *panel, const 
   for (int i = 0; dea_axis_tic(&v->y, i, &value); i++) {
     add_tic_label(out, v->left - 8, dea_axis_place(&v->y, value) + 4, "end", value, v->y.step);
   }
-  for (int i = 0; right && dea_axis_tic(&v->y2, i, &value); i++) {
-    add_tic_label(out, v->right + 8, dea_axis_place(&v->y2, value) + 4, "start", value, v->y2.step);
-  }
   dea_text_add(out, "</g><g class=\"labels\">");
   if (last) {
-    dea_text_add(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">",
-                 0.5 * (v->left + v->right), v->bottom + 38);
-    dea_html_label(out, panel->x_label, DEA_LABEL_SVG);
-    dea_text_add(out, "</text>");
+    add_label(out, 0.5 * (v->left + v->right), v->bottom + 38, "middle", panel->x_label);
   }
-  for (int k = 0; k < (right ? 2 : 1); k++) {
-    dea_text_add(out,
-                 "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\">",
-                 k == 0 ? 16.0 : WIDTH - 8.0, 0.5 * (v->top + v->bottom));
-    dea_html_label(out, k == 0 ? panel->y_label : panel->y2_label, DEA_LABEL_SVG);
-    dea_text_add(out, "</text>");
-  }
+  dea_text_add(out, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\">",
+               16.0, 0.5 * (v->top + v->bottom));
+  dea_html_label(out, panel->y_label, DEA_LABEL_SVG);
+  dea_text_add(out, "</text>");
   dea_text_add(out, "</g>");
 }
 
@@ -129,13 +113,12 @@ static bool place(const struct view *v, const struct dea_series *series, size_t 
                   double at[2])
 {
   double x = series->values[i], y = series->values[column * series->count + i];
-  const struct dea_axis *up = series->right ? &v->y2 : &v->y;
   if (!isfinite(x) || !isfinite(y) || (v->x.logarithmic && !(x > 0)) ||
-      (up->logarithmic && !(y > 0))) {
+      (v->y.logarithmic && !(y > 0))) {
     return false;
   }
   at[0] = dea_axis_place(&v->x, x);
-  at[1] = fmax(v->top - 2000, fmin(v->bottom + 2000, dea_axis_place(up, y)));
+  at[1] = fmax(v->top - 2000, fmin(v->bottom + 2000, dea_axis_place(&v->y, y)));
   return true;
 }
 
@@ -208,12 +191,11 @@ static void add_markers(struct dea_text *out, const struct view *v, const struct
     }
   }
   if (series->style == DEA_ERROR_BARS) {
-    const struct dea_axis *up = series->right ? &v->y2 : &v->y;
     for (size_t i = 0; i < series->count; i++) {
       double error = series->values[2 * series->count + i], y = series->values[series->count + i];
       if (place(v, series, i, 1, at) && isfinite(error)) {
-        dea_text_add(out, "M%.1f %.1fV%.1f", at[0], dea_axis_place(up, y - error),
-                     dea_axis_place(up, y + error));
+        dea_text_add(out, "M%.1f %.1fV%.1f", at[0], dea_axis_place(&v->y, y - error),
+                     dea_axis_place(&v->y, y + error));
       }
     }
   }
@@ -242,23 +224,14 @@ static void add_marks(struct dea_text *out, const struct dea_panel *panel, const
     dea_text_add(out, "<path d=\"M%.1f %.1fV%.1f\"/>", dea_axis_place(&v->x, 0), v->bottom, v->top);
   }
   for (int k = 0; panel->sides[0] != NULL && k < 2; k++) {
-    dea_text_add(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">",
-                 k == 0 ? v->left + 6 : v->right - 6, v->bottom - 8, k == 0 ? "start" : "end");
-    dea_html_label(out, panel->sides[k], DEA_LABEL_SVG);
-    dea_text_add(out, "</text>");
+    add_label(out, k == 0 ? v->left + 6 : v->right - 6, v->bottom - 8, k == 0 ? "start" : "end",
+              panel->sides[k]);
   }
   for (size_t i = 0; i < panel->mark_count; i++) {
     const struct dea_mark *mark = &panel->marks[i];
-    double at = dea_axis_place(mark->vertical ? &v->x : &v->y, mark->at);
-    if (mark->vertical) {
-      dea_text_add(out,
-                   "<path d=\"M%.1f %.1fV%.1f\"/><text transform=\"translate(%.1f %.1f) "
-                   "rotate(-90)\" text-anchor=\"end\">",
-                   at, v->bottom, v->top, at - 4, v->top + 4 + 90 * (double)(i % 3));
-    } else {
-      dea_text_add(out, "<path d=\"M%.1f %.1fH%.1f\"/><text x=\"%.1f\" y=\"%.1f\">", v->left, at,
-                   v->right, v->left + 6, at - 4);
-    }
+    double at = dea_axis_place(&v->y, mark->at);
+    dea_text_add(out, "<path d=\"M%.1f %.1fH%.1f\"/><text x=\"%.1f\" y=\"%.1f\">", v->left, at,
+                 v->right, v->left + 6, at - 4);
     dea_html_label(out, mark->text, DEA_LABEL_SVG);
     dea_text_add(out, "</text>");
   }
@@ -341,7 +314,6 @@ static void add_json(struct dea_text *out, const struct dea_panel *panel, const 
   dea_text_add(out, "{");
   add_json_axis(out, "x", &v->x);
   add_json_axis(out, "y", &v->y);
-  add_json_axis(out, "y2", &v->y2);
   dea_text_add(out, "\"xl\":\"");
   dea_html_label(out, panel->x_label, DEA_LABEL_JSON);
   dea_text_add(out, "\",\"series\":[");
@@ -352,7 +324,7 @@ static void add_json(struct dea_text *out, const struct dea_panel *panel, const 
     }
     dea_text_add(out, "%s{\"t\":\"", first ? "" : ",");
     dea_html_label(out, series->title, DEA_LABEL_JSON);
-    dea_text_add(out, "\",\"c\":%d,\"r\":%d,\"p\":%d,\"v\":[", (int)series->colour, series->right,
+    dea_text_add(out, "\",\"c\":%d,\"p\":%d,\"v\":[", (int)series->colour,
                  series->style == DEA_MARKERS || series->style == DEA_ERROR_BARS);
     add_numbers(out, series->values, series->count);
     dea_text_add(out, ",");
@@ -381,12 +353,8 @@ static void add_panel(struct dea_text *out, const struct dea_panel *panel, const
     }
   }
   add_marks(out, panel, v);
-  dea_text_add(out, "</g><path class=\"frame\" d=\"M%.1f %.1fV%.1fH%.1f", v->left, v->top,
+  dea_text_add(out, "</g><path class=\"frame\" d=\"M%.1f %.1fV%.1fH%.1f\"/>", v->left, v->top,
                v->bottom, v->right);
-  if (panel->y2_label[0] != '\0') {
-    dea_text_add(out, "V%.1f", v->top);
-  }
-  dea_text_add(out, "\"/>");
 }
 
 void dea_plot_add_svg(struct dea_text *out, const struct dea_plot *plot, int number)

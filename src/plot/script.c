@@ -1,6 +1,9 @@
 #include "plot/script.h"
 
 #include "base/version.h"
+#include "base/write_file.h"
+
+#include <stdio.h>
 
 void dea_script_head(struct dea_text *gp, const char *name, const char *caption,
                      const struct dea_plot_format *format, double width_mm, double height_mm)
@@ -51,4 +54,17 @@ void dea_script_terminals(struct dea_text *gp)
           "  }\n"
           "  set key font small spacing key_spacing\n"
           "  set output out.name.\".\".format\n");
+}
+
+dea_status dea_script_write(const char *directory, const char *name, struct dea_text *gp,
+                            struct dea_text *dat)
+{
+  char file[80];
+  snprintf(file, sizeof file, "%.70s.dat", name);
+  dea_status status = dea_text_write(dat->ctx, dat, directory, file);
+  snprintf(file, sizeof file, "%.70s.gp", name);
+  status = status == DEA_OK ? dea_text_write(gp->ctx, gp, directory, file) : status;
+  dea_text_free(gp);
+  dea_text_free(dat);
+  return status;
 }

@@ -5,8 +5,6 @@
 
 /* The family of all figures, which packages.txt installs: the same in all formats. */
 #define DEA_SCRIPT_FONT "DejaVu Sans"
-/* Dots of a PNG in a metre: 300 an inch. */
-#define DEA_SCRIPT_PNG_DOTS_PER_M (300 / 0.0254)
 
 /* The settings that a user may want to change, and those that hold for all figures. */
 void dea_script_head(struct dea_text *gp, const char *name, const char *caption,
@@ -14,3 +12,6 @@ void dea_script_head(struct dea_text *gp, const char *name, const char *caption,
 /* Opens the loop over the formats: terminal, sizes of signs and the file that is drawn into. The
  * caller closes it with "}". */
 void dea_script_terminals(struct dea_text *gp);
+/* Writes NAME.dat and NAME.gp; frees both texts. */
+dea_status dea_script_write(const char *directory, const char *name, struct dea_text *gp,
+                            struct dea_text *dat);

@@ -9,12 +9,13 @@
 
 // Data -------------------------------------------------------------------------------------------
 
-static void add_value(struct dea_text *dat, double value)
+/* A number, or what stands for one that is none. */
+static void add_number(struct dea_text *out, double value, const char *otherwise)
 {
   if (isfinite(value)) {
-    dea_text_add(dat, "%.10g", value);
+    dea_text_add(out, "%.10g", value);
   } else {
-    dea_text_add(dat, "NaN");
+    dea_text_add(out, "%s", otherwise);
   }
 }
 
@@ -27,11 +28,11 @@ static void add_block(struct dea_text *dat, size_t index, const struct dea_panel
                       const struct dea_series *series)
 {
   dea_text_add(dat, "%s# index %zu: %s\n# %s | %s\n", index > 0 ? "\n\n" : "", index, series->title,
-               panel->x_label, series->right ? panel->y2_label : panel->y_label);
+               panel->x_label, panel->y_label);
   for (size_t i = 0; i < series->count; i++) {
     for (size_t k = 0; k < (has_error(series) ? 3U : 2U); k++) {
       dea_text_add(dat, "%s", k > 0 ? " " : "");
-      add_value(dat, series->values[k * series->count + i]);
+      add_number(dat, series->values[k * series->count + i], "NaN");
     }
     dea_text_add(dat, "\n");
   }
@@ -62,44 +63,43 @@ static const char *const colours[] = {
 static const int markers[] = {6, 4, 8, 10, 12, 7, 5, 9, 11, 13};
 enum { MARKER_COUNT = sizeof markers / sizeof markers[0] };
 
+/* How gnuplot draws each style. */
+static const struct {
+  const char *with;
+  double width;
+  bool scales;      // with the width of the series
+  const char *size; // of the markers; NULL: none
+  const char *dash;
+} looks[] = {
+    [DEA_LINE] = {"lines", 1.5, true, NULL, ""},
+    [DEA_THIN] = {"lines", 0.5, false, NULL, ""},
+    [DEA_LINE_MARKED] = {"linespoints", 1.2, true, "0.6", ""},
+    [DEA_DASHED] = {"lines", 1.2, true, NULL, " dt (8,5)"},
+    [DEA_DOTTED] = {"lines", 1.4, false, NULL, " dt (2,2)"},
+    [DEA_MARKERS] = {"points", 1.2, false, "0.7", ""},
+    [DEA_ERROR_BARS] = {"yerrorbars", 1.0, false, "0.6", ""},
+};
+
 static void add_style(struct dea_text *gp, const struct dea_series *series)
 {
   const char *colour = colours[series->colour];
-  int marker = markers[series->marker % MARKER_COUNT];
-  double width = series->width > 0 ? series->width : 1;
-  size_t interval = series->count / 10 > 1 ? series->count / 10 : 1;
-  switch (series->style) {
-  case DEA_LINE:
-    dea_text_add(gp, "with lines lw %.3g lc rgb \"%s\"", 1.5 * width, colour);
-    break;
-  case DEA_THIN:
-    dea_text_add(gp, "with lines lw 0.5 lc rgb \"%s\"", colour);
-    break;
-  case DEA_LINE_MARKED:
-    dea_text_add(gp, "with linespoints lw %.3g pt %d ps 0.6 pi %zu lc rgb \"%s\"", 1.2 * width,
-                 marker, interval, colour);
-    break;
-  case DEA_DASHED:
-    dea_text_add(gp, "with lines lw %.3g dt (8,5) lc rgb \"%s\"", 1.2 * width, colour);
-    break;
-  case DEA_DOTTED:
-    dea_text_add(gp, "with lines lw 1.4 dt (2,2) lc rgb \"%s\"", colour);
-    break;
-  case DEA_MARKERS:
-    dea_text_add(gp, "with points lw 1.2 pt %d ps 0.7 lc rgb \"%s\"", marker, colour);
-    break;
-  case DEA_ERROR_BARS:
-    dea_text_add(gp, "with yerrorbars lw 1 pt %d ps 0.6 lc rgb \"%s\"", marker, colour);
-    break;
-  case DEA_BAND:
-    if (series->colour == DEA_GREY) {
-      dea_text_add(gp, "with filledcurves fillstyle solid noborder lc rgb \"#D9D9D9\"");
-    } else { // so that two of them, and what lies below, show
-      dea_text_add(gp, "with filledcurves fillstyle transparent solid 0.2 noborder lc rgb \"%s\"",
-                   colour);
-    }
-    break;
+  if (series->style == DEA_BAND) { // of colours two, and what lies below, show
+    bool grey = series->colour == DEA_GREY;
+    dea_text_add(gp, "with filledcurves fillstyle %s noborder lc rgb \"%s\"",
+                 grey ? "solid" : "transparent solid 0.2", grey ? "#D9D9D9" : colour);
+    return;
   }
+  bool wide = looks[series->style].scales && series->width > 0;
+  dea_text_add(gp, "with %s lw %.3g", looks[series->style].with,
+               looks[series->style].width * (wide ? series->width : 1));
+  if (looks[series->style].size != NULL) {
+    dea_text_add(gp, " pt %d ps %s", markers[series->marker % MARKER_COUNT],
+                 looks[series->style].size);
+  }
+  if (series->style == DEA_LINE_MARKED) {
+    dea_text_add(gp, " pi %zu", series->count / 10 > 1 ? series->count / 10 : 1);
+  }
+  dea_text_add(gp, "%s lc rgb \"%s\"", looks[series->style].dash, colour);
 }
 
 /* Adds ` what "text"` for enhanced text that is escaped already. Some readers of SVG drop blanks at
@@ -123,8 +123,8 @@ static void add_series(struct dea_text *gp, const struct dea_series *series, siz
   const char *use = series->style == DEA_ERROR_BARS ? "1:2:(valid(3) ? $3 : 0)"
                     : series->style == DEA_BAND     ? "1:2:3"
                                                     : "1:2";
-  dea_text_add(gp, "%s data index %zu using %s axes x1y%d ", first ? "  plot" : ", \\\n      ",
-               index, use, series->right ? 2 : 1);
+  dea_text_add(gp, "%s data index %zu using %s axes x1y1 ", first ? "  plot" : ", \\\n      ",
+               index, use);
   add_style(gp, series);
   if (series->title[0] != '\0') {
     add_label(gp, " title", series->title);
@@ -133,51 +133,25 @@ static void add_series(struct dea_text *gp, const struct dea_series *series, siz
   }
 }
 
-static void add_limit(struct dea_text *gp, double limit)
-{
-  if (isfinite(limit)) {
-    dea_text_add(gp, "%.10g", limit);
-  } else {
-    dea_text_add(gp, "*");
-  }
-}
-
 static void add_range(struct dea_text *gp, const char *axis, double from, double to)
 {
   dea_text_add(gp, "  set %srange [", axis);
-  add_limit(gp, from);
+  add_number(gp, from, "*");
   dea_text_add(gp, ":");
-  add_limit(gp, to);
+  add_number(gp, to, "*");
   dea_text_add(gp, "]\n");
 }
 
-/* Marks; words of neighbours that would touch are put at different heights. */
 static void add_marks(struct dea_text *gp, const struct dea_panel *panel)
 {
-  double span = panel->x_max - panel->x_min;
   for (size_t i = 0; i < panel->mark_count; i++) {
     const struct dea_mark *mark = &panel->marks[i];
-    double height = 0.97;
-    for (size_t k = 0; k < i && mark->vertical; k++) {
-      if (panel->marks[k].vertical && fabs(panel->marks[k].at - mark->at) < 0.06 * span) {
-        height -= 0.3;
-      }
-    }
-    if (mark->vertical) {
-      dea_text_add(gp,
-                   "  set arrow from first %.10g, graph 0 to first %.10g, graph 1 nohead back "
-                   "lw 0.8 dt (4,3) lc rgb \"%s\"\n"
-                   "  set label \"%s\" at first %.10g, graph %.2f right rotate by 90 "
-                   "offset char -0.55,0 font small front\n",
-                   mark->at, mark->at, colours[DEA_GREY], mark->text, mark->at, height);
-    } else {
-      dea_text_add(gp,
-                   "  set arrow from graph 0, first %.10g to graph 1, first %.10g nohead back "
-                   "lw 0.8 dt (4,3) lc rgb \"%s\"\n"
-                   "  set label \"%s\" at graph 0.02, first %.10g left offset char 0,0.5 "
-                   "font small front\n",
-                   mark->at, mark->at, colours[DEA_GREY], mark->text, mark->at);
-    }
+    dea_text_add(gp,
+                 "  set arrow from graph 0, first %.10g to graph 1, first %.10g nohead back "
+                 "lw 0.8 dt (4,3) lc rgb \"%s\"\n"
+                 "  set label \"%s\" at graph 0.02, first %.10g left offset char 0,0.5 "
+                 "font small front\n",
+                 mark->at, mark->at, colours[DEA_GREY], mark->text, mark->at);
   }
 }
 
@@ -202,11 +176,11 @@ static int digits_behind(double span)
   return power >= 0.0 ? 0 : (int)(1.0 - power); // 0.05 in steps of 0.005
 }
 
-/* Characters of the longest tic label of a panel's left axis, as "%h" writes round numbers. */
+/* Characters of the longest tic label of a panel's y axis, as "%h" writes round numbers. */
 static int tic_length(const struct dea_panel *panel)
 {
   double highest, lowest;
-  dea_panel_range(panel, false, &lowest, &highest);
+  dea_panel_range(panel, &lowest, &highest);
   highest = fmax(highest, panel->y_max); // NAN where the values decide
   lowest = fmin(lowest, panel->y_min);
   double largest = fmax(fabs(highest), fabs(lowest));
@@ -216,16 +190,12 @@ static int tic_length(const struct dea_panel *panel)
 
 static struct layout lay_out(const struct dea_plot *plot, double width_m)
 {
-  bool right_axis = false;
-  for (size_t p = 0; p < plot->panel_count; p++) {
-    right_axis = right_axis || plot->panels[p].y2_label[0] != '\0';
-  }
   struct layout l = {.width_mm = 1e3 * width_m, .left_mm = 14.0};
   for (size_t p = 0; p < plot->panel_count; p++) {
     l.left_mm = fmax(l.left_mm, 14.0 + 1.6 * (fmin(tic_length(&plot->panels[p]), 9.0) - 4.0));
   }
   double panel = l.width_mm > 120.0 ? 0.50 * l.width_mm : 0.60 * l.width_mm;
-  l.right_mm = l.width_mm - (right_axis ? 13.5 : 3.5);
+  l.right_mm = l.width_mm - 3.5;
   l.bottom_mm[0] = 10.0;
   if (plot->panel_count == 2) {
     l.bottom_mm[1] = 10.0;
@@ -295,15 +265,7 @@ static void add_axes(struct dea_text *gp, const struct dea_panel *panel, bool ha
     dea_text_add(gp, "  set ytics autofreq\n");
   }
   add_label(gp, "  set ylabel", panel->y_label);
-  dea_text_add(gp, " offset y_shift,0\n");
-  if (panel->y2_label[0] != '\0') {
-    add_range(gp, "y2", NAN, panel->y2_max);
-    add_label(gp, "  set y2label", panel->y2_label);
-    dea_text_add(gp, " offset -y_shift,0 textcolor rgb \"%s\"\n  set y2tics textcolor rgb \"%s\"\n",
-                 colours[panel->y2_colour], colours[panel->y2_colour]);
-  } else {
-    dea_text_add(gp, "  unset y2label\n  unset y2tics\n");
-  }
+  dea_text_add(gp, " offset y_shift,0\n  unset y2label\n  unset y2tics\n");
 }
 
 /* The line between two sections that meet at x = 0, and what they are. */
@@ -376,17 +338,10 @@ static void add_script(struct dea_text *gp, const struct dea_plot *plot,
 dea_status dea_plot_write(struct dea_context *ctx, const struct dea_plot *plot,
                           const struct dea_plot_format *format, const char *directory)
 {
-  char gp_name[80], dat_name[80];
-  snprintf(gp_name, sizeof gp_name, "%s.gp", plot->name);
-  snprintf(dat_name, sizeof dat_name, "%s.dat", plot->name);
   struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
   void *before = dea_c_locale_enter();
   add_script(&gp, plot, format);
   add_data(&dat, plot);
   dea_c_locale_leave(before);
-  dea_status status = dea_text_write(ctx, &dat, directory, dat_name);
-  status = status == DEA_OK ? dea_text_write(ctx, &gp, directory, gp_name) : status;
-  dea_text_free(&gp);
-  dea_text_free(&dat);
-  return status;
+  return dea_script_write(directory, plot->name, &gp, &dat);
 }

@@ -106,8 +106,7 @@ static dea_status add_doubtful_markers(struct dea_context *ctx, struct dea_panel
 
 /* Band of the estimated error of a column, where it has one, below the curve. */
 static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
-                            const struct dea_curve *curve, int column, double factor, double shift,
-                            bool right)
+                            const struct dea_curve *curve, int column, double factor, double shift)
 {
   int error = dea_point_error_column(ctx, column);
   size_t n = curve->count;
@@ -116,7 +115,6 @@ static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_panel_add(ctx, panel, n, DEA_BAND, DEA_GREY, "", &band));
-  band->right = right;
   band->secondary = true;
   for (size_t i = 0; i < n; i++) {
     const struct dea_load_point *p = &curve->points[i];
@@ -143,7 +141,6 @@ static dea_status add_std(struct dea_context *ctx, struct dea_panel *panel,
   }
   DEA_TRY(ctx, dea_panel_add(ctx, panel, n, DEA_BAND, look->colour, "\302\261 1 std of the model",
                              &band));
-  band->right = look->right;
   for (size_t s = 0; s + 1 < panel->series_count; s++) { // once for all
     if (strcmp(panel->series[s].title, band->title) == 0) {
       band->title[0] = '\0';
@@ -194,7 +191,7 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
     shown.secondary = true;
   }
   DEA_TRY(ctx, add_std(ctx, panel, curve, column, factor, shift, &shown));
-  DEA_TRY(ctx, add_error(ctx, panel, curve, column, factor, shift, shown.right));
+  DEA_TRY(ctx, add_error(ctx, panel, curve, column, factor, shift));
   DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, &shown, true));
   size_t doubtful = 0;
   for (size_t i = 0; i < curve->count; i++) {

@@ -17,8 +17,10 @@ struct dea_figure {
                       struct dea_plot *plot);
   /* In its place for a figure that is no plot of series: writes its script and data. *drawn: false
    * when the result has nothing to show. */
-  dea_status (*write)(struct dea_context *ctx, const struct dea_result *result,
-                      const struct dea_figure_options *options, const char *directory, bool *drawn);
+  dea_status (*write)(struct dea_context *ctx, const struct dea_figure *figure,
+                      const struct dea_result *result, const struct dea_figure_options *options,
+                      const char *directory, bool *drawn);
+  const void *view; // what `write` knows of it
 };
 
 /* One of a study. */
@@ -33,8 +35,8 @@ struct dea_figure {
  * round with prefer_path); NULL when neither has points. */
 const struct dea_curve *dea_figure_curve(const struct dea_result *result, const char *model,
                                          bool prefer_path);
-/* Adds y = factor * (member + shift) against V in kV, as look says (title, style, colour, marker,
- * right); what is not to be trusted is dashed, what is a bound dotted and said to be one; a
+/* Adds y = factor * (member + shift) against V in kV, as look says (title, style, colour,
+ * marker); what is not to be trusted is dashed, what is a bound dotted and said to be one; a
  * grey band is the estimated error where that is known, one in the curve's colour its standard
  * uncertainty. Adds nothing when the curve has no such number. */
 dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,

@@ -375,7 +375,7 @@ static dea_status fill_plot(struct dea_context *ctx, const struct dea_convergenc
     struct dea_panel *panel = &plot->panels[p];
     char text[32];
     snprintf(text, sizeof text, "%.3g %%", 100 * c->tolerance);
-    dea_panel_mark(panel, false, 100 * c->tolerance, text);
+    dea_panel_mark(panel, 100 * c->tolerance, text);
     snprintf(panel->x_label, sizeof panel->x_label, "Unknowns (thousands)");
     panel->logarithmic = true;
     set_limits(panel, 100 * c->tolerance);

@@ -266,7 +266,7 @@ void dea_observe_time_axis(struct dea_panel *panel)
   snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
   dea_panel_place_key(panel);
   double low, high;
-  if (isnan(panel->y_max) && dea_panel_range(panel, false, &low, &high) && high > low) {
+  if (isnan(panel->y_max) && dea_panel_range(panel, &low, &high) && high > low) {
     panel->y_max = high + 0.06 * (high - low); // what is held lies below the border
   }
 }

@@ -44,18 +44,17 @@ TEST(test_png)
   for (size_t i = 8; i < sizeof png; i++) {
     png[i] = (char)i;
   }
-  assert_int_equal(dea_png_finish(ctx, png, sizeof png, DEA_SCRIPT_PNG_DOTS_PER_M, &out, &length),
-                   DEA_OK);
+  assert_int_equal(dea_png_finish(ctx, png, sizeof png, &out, &length), DEA_OK);
   assert_int_equal(length, sizeof png + sizeof chunk);
   assert_memory_equal(out, png, 33);
   assert_memory_equal(out + 33, chunk, sizeof chunk);
   assert_memory_equal(out + 33 + sizeof chunk, png + 33, sizeof png - 33);
-  assert_int_equal(dea_png_finish(ctx, out, length, 1000, &again, &same), DEA_OK);
+  assert_int_equal(dea_png_finish(ctx, out, length, &again, &same), DEA_OK);
   assert_int_equal(same, length); // it has one
   assert_memory_equal(again, out, length);
   dea_free(ctx, again);
   dea_free(ctx, out);
-  assert_int_equal(dea_png_finish(ctx, "text", 4, 1000, &out, &length), DEA_OK);
+  assert_int_equal(dea_png_finish(ctx, "text", 4, &out, &length), DEA_OK);
   assert_int_equal(length, 4);
   dea_free(ctx, out);
 }
@@ -75,21 +74,21 @@ TEST(test_what_is_aside_does_not_set_the_axis)
   double low, high;
   assert_int_equal(dea_plot_create(ctx, "tension", "", &plot), DEA_OK);
   struct dea_panel *panel = &plot->panels[0];
-  assert_false(dea_panel_range(panel, false, &low, &high));
+  assert_false(dea_panel_range(panel, &low, &high));
   add(panel, 35, 20, false);
   add(panel, 20, -1766, true);
-  assert_true(dea_panel_range(panel, false, &low, &high));
+  assert_true(dea_panel_range(panel, &low, &high));
   assert_close(low, 12.5, 1e-12, 0);
   assert_close(high, 35, 1e-12, 0);
   dea_panel_voltage_axis(panel);
   assert_close(panel->y_min, 10, 1e-12, 0);
   assert_true(isnan(panel->y_max)); // left to gnuplot
   add(panel, 36, 38, true);         // little more than the others
-  assert_true(dea_panel_range(panel, false, &low, &high));
+  assert_true(dea_panel_range(panel, &low, &high));
   assert_close(high, 38, 1e-12, 0);
   dea_panel_clear(ctx, panel);
   add(panel, 20, -1766, true); // nothing else is there
-  assert_true(dea_panel_range(panel, false, &low, &high));
+  assert_true(dea_panel_range(panel, &low, &high));
   assert_close(low, -1766, 1e-12, 0);
   dea_plot_destroy(ctx, plot);
 }

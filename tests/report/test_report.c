@@ -309,7 +309,7 @@ TEST(test_measurement)
   read_page("m.html");
   assert_well_formed();
   assert_contains(page, "Computed and measured");
-  assert_contains(page, "\"t\":\"measured\",\"c\":6,\"r\":0,\"p\":1,\"v\":[[1,4],[12.5,250]]");
+  assert_contains(page, "\"t\":\"measured\",\"c\":6,\"p\":1,\"v\":[[1,4],[12.5,250]]");
   // A folder of dea reduce: the same points.
   command_folder_make("red");
   command_write("red/measurement.csv", measured);
