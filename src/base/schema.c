@@ -29,27 +29,23 @@ bool dea_field_has_record(const struct dea_field *field)
 const struct dea_field *dea_record_find(const struct dea_record *record, const char *key,
                                         size_t *offset)
 {
-  const struct dea_field *found = NULL;
-  size_t base = 0;
-  while (record != NULL) {
-    const size_t length = strcspn(key, ".");
-    found = NULL;
-    for (size_t i = 0; i < record->field_count && found == NULL; i++) {
-      const struct dea_field *field = &record->fields[i];
-      found = strlen(field->key) == length && memcmp(field->key, key, length) == 0 ? field : NULL;
+  const size_t length = strcspn(key, ".");
+  for (size_t i = 0; i < record->field_count; i++) {
+    const struct dea_field *field = &record->fields[i], *found = field;
+    size_t inner = 0;
+    if (strlen(field->key) != length || memcmp(field->key, key, length) != 0) {
+      continue;
     }
-    base += found != NULL ? found->offset : 0;
-    if (found == NULL || key[length] == '\0') {
-      break;
+    if (key[length] == '.') {
+      const bool section = dea_field_has_record(field) && field->list_max == 0;
+      found = section ? dea_record_find(field->record, key + length + 1, &inner) : NULL;
     }
-    record = dea_field_has_record(found) && found->list_max == 0 ? found->record : NULL;
-    found = NULL;
-    key += length + 1;
+    if (offset != NULL) {
+      *offset = field->offset + inner;
+    }
+    return found;
   }
-  if (offset != NULL) {
-    *offset = base;
-  }
-  return found;
+  return NULL;
 }
 
 bool dea_field_varies(const struct dea_field *field)

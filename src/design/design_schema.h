@@ -27,6 +27,10 @@ struct dea_design_raw {
 /* Parts of the table that have a file of their own; base as below. */
 extern const struct dea_record dea_fabrication_record, dea_fabrication_general_record;
 
+/* Row of a length with its film state (INPLANE), or of the stretched film (STRETCHED). */
+#define DEA_LENGTH_ROW(its_kind, name, at, sample, text, ...)                                      \
+  DEA_FIELD_ROW(its_kind, name, at, .unit = "m", .example = sample, .doc = text, __VA_ARGS__)
+
 enum { DEA_DESIGN_TOP_MAX = 40, DEA_DESIGN_COMPUTE_MAX = 32 };
 
 /* The table of one form of a design file; record's base: a struct dea_design_raw. */

@@ -18,10 +18,9 @@ static const struct dea_field sheet_fields[] = {
 };
 
 static const struct dea_field blank_fields[] = {
-    DEA_FIELD_ROW(INPLANE, "margin", AT(blank.margin), .unit = "m", .max = 1,
-                  .default_text = "10 mm stretched",
-                  .doc = "film beyond the outer edge of the frame, for the grips of the stretcher",
-                  .example = "10 mm stretched"),
+    DEA_LENGTH_ROW(INPLANE, "margin", AT(blank.margin), "10 mm stretched",
+                   "film beyond the outer edge of the frame, for the grips of the stretcher",
+                   .max = 1, .default_text = "10 mm stretched"),
 };
 
 static const struct dea_field frame_fields[] = {
@@ -39,12 +38,11 @@ static const struct dea_field frame_fields[] = {
 };
 
 static const struct dea_field leads_fields[] = {
-    DEA_FIELD_ROW(INPLANE, "width", AT(leads.width), .unit = "m", .above_min = true, .max = 1,
-                  .default_text = "1 mm unstretched", .doc = "width of a lead",
-                  .example = "1 mm unstretched"),
-    DEA_FIELD_ROW(INPLANE, "pad_diameter", AT(leads.pad_diameter), .unit = "m", .above_min = true,
-                  .max = 1, .default_text = "5 mm stretched",
-                  .doc = "diameter of the pad at the end of a lead", .example = "5 mm stretched"),
+    DEA_LENGTH_ROW(INPLANE, "width", AT(leads.width), "1 mm unstretched", "width of a lead",
+                   .above_min = true, .max = 1, .default_text = "1 mm unstretched"),
+    DEA_LENGTH_ROW(INPLANE, "pad_diameter", AT(leads.pad_diameter), "5 mm stretched",
+                   "diameter of the pad at the end of a lead", .above_min = true, .max = 1,
+                   .default_text = "5 mm stretched"),
     DEA_NUMBER_ROW("angle", AT(leads.angle_rad), "radian", "45 degree",
                    "direction of the lead of the top electrode, from the first fibre, seen from "
                    "the fibres; that of the bottom electrode goes to the other side",
@@ -74,14 +72,13 @@ static const struct dea_field holder_fields[] = {
 };
 
 static const struct dea_field marks_fields[] = {
-    DEA_FIELD_ROW(INPLANE, "diameter", AT(mark_diameter), .unit = "m", .above_min = true,
-                  .max = 0.1, .default_text = "1 mm unstretched",
-                  .doc = "diameter of an alignment mark", .example = "1 mm unstretched"),
-    DEA_FIELD_ROW(
-        INPLANE, "grid", AT(grid_spacing), .unit = "m", .above_min = true, .max = 1,
-        .default_text = "5 mm unstretched",
-        .doc = "spacing of the grid of crosses on the film, from which the pre-stretch is measured",
-        .example = "5 mm unstretched"),
+    DEA_LENGTH_ROW(INPLANE, "diameter", AT(mark_diameter), "1 mm unstretched",
+                   "diameter of an alignment mark", .above_min = true, .max = 0.1,
+                   .default_text = "1 mm unstretched"),
+    DEA_LENGTH_ROW(
+        INPLANE, "grid", AT(grid_spacing), "5 mm unstretched",
+        "spacing of the grid of crosses on the film, from which the pre-stretch is measured",
+        .above_min = true, .max = 1, .default_text = "5 mm unstretched"),
 };
 
 static const struct dea_field cure_fields[] = {
@@ -97,16 +94,15 @@ static const struct dea_field tolerance_fields[] = {
                    .default_text = "5 %"),
     DEA_NUMBER_ROW("pre_stretch", AT(tolerance.pre_stretch), "1", "0.02", "of the pre-stretch",
                    .above_min = true, .max = 1, .default_text = "0.02"),
-    DEA_FIELD_ROW(INPLANE, "electrode", AT(tolerance.electrode), .unit = "m", .above_min = true,
-                  .max = 0.1, .default_text = "0.1 mm unstretched",
-                  .doc = "of the diameter of the electrodes", .example = "0.1 mm unstretched"),
+    DEA_LENGTH_ROW(INPLANE, "electrode", AT(tolerance.electrode), "0.1 mm unstretched",
+                   "of the diameter of the electrodes", .above_min = true, .max = 0.1,
+                   .default_text = "0.1 mm unstretched"),
     DEA_NUMBER_ROW("frame", AT(tolerance.frame_m), "m", "0.1 mm",
                    "of the inner diameter of the frame", .above_min = true, .max = 0.1,
                    .default_text = "0.1 mm"),
-    DEA_FIELD_ROW(INPLANE, "fibre_tip", AT(tolerance.fibre), .unit = "m", .above_min = true,
-                  .max = 0.1, .default_text = "0.2 mm stretched",
-                  .doc = "of the distance of a fibre tip from the centre",
-                  .example = "0.2 mm stretched"),
+    DEA_LENGTH_ROW(INPLANE, "fibre_tip", AT(tolerance.fibre), "0.2 mm stretched",
+                   "of the distance of a fibre tip from the centre", .above_min = true, .max = 0.1,
+                   .default_text = "0.2 mm stretched"),
 };
 
 #define SECTION_ROW(word, rows, words)                                                             \
