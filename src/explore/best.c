@@ -28,12 +28,6 @@ struct work {
 
 // What is sought ----------------------------------------------------------------------------------
 
-/* Value of a column at the last voltage. */
-static double last_value(const struct dea_design_space *space, int column, const double *q)
-{
-  return q[(space->voltage_count - 1) * space->quantity_count + (size_t)column];
-}
-
 static double sign_of(const struct dea_design_space *space, size_t k)
 {
   return space->file->objectives[k].goal.value == DEA_MOST ? -1 : 1;
@@ -42,7 +36,8 @@ static double sign_of(const struct dea_design_space *space, size_t k)
 static double objective(const void *user, size_t k, const double *q)
 {
   const struct dea_design_space *space = ((const struct work *)user)->space;
-  return sign_of(space, k) * last_value(space, space->objectives[k], q);
+  const size_t last = (space->voltage_count - 1) * space->quantity_count;
+  return sign_of(space, k) * q[last + (size_t)space->objectives[k]];
 }
 
 static double margin(const void *user, size_t side, const double *q)

@@ -205,8 +205,8 @@ static dea_status stand(void *user, struct dea_model *model, const struct dea_de
   const struct dea_model_settings settings = dea_model_settings_of(design);
   status =
       stop + 1 == space->voltage_count ? find_critical(space, &settings, design, device) : DEA_OK;
-  if (status == DEA_OK && space->now != NULL) {
-    status = dea_design_space_add_slopes(space, model, device, stop);
+  if (status == DEA_OK && space->add_slopes != NULL) {
+    status = space->add_slopes(space, model, device, stop);
   }
   for (size_t i = 0; i < space->quantity_count; i++) {
     dea_critical_end(ctx, &space->critical[i]);

@@ -71,6 +71,9 @@ struct dea_design_space {
   struct dea_arena memory;
   char id[DEA_CASE_ID_SIZE];
   struct dea_case *now; // what is evaluated, where slopes are wanted too
+  /* Adds these, of each stop, as of struct dea_device_model; NULL: nobody. */
+  dea_status (*add_slopes)(const struct dea_design_space *space, struct dea_model *model,
+                           const struct dea_device *device, size_t stop);
 };
 
 /* Reads a file and resolves it. All that is wrong becomes findings, at its place, before anything
@@ -99,7 +102,3 @@ dea_status dea_from_fit_read(struct dea_context *ctx, const struct dea_design *d
  * at a design. The evaluator without gradients where the model has none of its own, or the file's
  * method wants none. user: lent by the space. */
 struct dea_evaluator dea_design_space_with_slopes(const struct dea_design_space *space);
-/* Adds these slopes to the case that is evaluated, of a model that stands at a stop. */
-dea_status dea_design_space_add_slopes(const struct dea_design_space *space,
-                                       struct dea_model *model, const struct dea_device *device,
-                                       size_t stop);

@@ -318,9 +318,12 @@ static dea_status run(struct work *w)
   if (status != DEA_E_MEMORY && (options->merge || options->shard.parts == 1)) {
     DEA_TRY(ctx, dea_sweep_write(w->space, &w->plan, &options->format, options->folder));
     w->report->written = true;
-    DEA_TRY(ctx, w->plan.nodes == NULL && options->at_count == 0
-                     ? DEA_OK
-                     : dea_sweep_emulate(w->space, &w->plan, options, &w->report->at));
+    if (w->plan.nodes == NULL && options->at_count > 0) {
+      return dea_fail(ctx, DEA_E_DESIGN, "--at is of the plan sparse-grid");
+    }
+    if (w->plan.nodes != NULL && w->report->there == w->plan.count) {
+      DEA_TRY(ctx, dea_sweep_emulate(w->space, &w->plan, options, &w->report->at));
+    }
   }
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }

@@ -176,9 +176,8 @@ static dea_status find_critical(struct dea_context *ctx, const struct dea_design
   return DEA_OK;
 }
 
-dea_status dea_design_space_add_slopes(const struct dea_design_space *space,
-                                       struct dea_model *model, const struct dea_device *device,
-                                       size_t stop)
+static dea_status add_slopes(const struct dea_design_space *space, struct dea_model *model,
+                             const struct dea_device *device, size_t stop)
 {
   struct dea_context *ctx = space->model.ctx;
   const size_t last = space->voltage_count - 1;
@@ -209,8 +208,9 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
 {
   struct dea_design_space *space = user;
   space->now = io;
+  space->add_slopes = add_slopes;
   const dea_status status = space->evaluator.evaluate(space, ctx, io);
-  space->now = NULL;
+  space->add_slopes = NULL;
   return status;
 }
 

@@ -15,8 +15,8 @@ struct work {
   char device[65];
 };
 
-/* Whether all cases of the plan are done; they are then in *w. */
-static dea_status gather(struct work *w, const struct dea_plan *plan, bool *whole)
+/* The cases of a plan, which are all done, into *w. */
+static dea_status gather(struct work *w, const struct dea_plan *plan)
 {
   const struct dea_design_space *space = w->space;
   const size_t keys = space->variable_count, volts = space->voltage_count,
@@ -36,14 +36,9 @@ static dea_status gather(struct work *w, const struct dea_plan *plan, bool *whol
   for (size_t q = 0; q < space->quantity_count; q++) {
     columns[q] = &space->quantities[q].shown;
   }
-  *whole = true;
-  for (size_t c = 0; c < plan->count && *whole; c++) {
-    const struct dea_case *done = plan->cases[c];
-    *whole = done != NULL;
-    if (done != NULL) {
-      memcpy(values + c * each, done->q, each * sizeof *values);
-      memcpy(flags + c * volts, done->marks, volts * sizeof *flags);
-    }
+  for (size_t c = 0; c < plan->count; c++) {
+    memcpy(values + c * each, plan->cases[c]->q, each * sizeof *values);
+    memcpy(flags + c * volts, plan->cases[c]->marks, volts * sizeof *flags);
   }
   w->emulator = (struct dea_emulator){.model = space->model.type->name,
                                       .device = w->device,
@@ -137,9 +132,7 @@ static dea_status emulate(struct work *w, const struct dea_sweep_options *option
   double share[DEA_CASE_PARAMS_MAX];
   char *json;
   DEA_TRY(ctx, dea_json_text(ctx, dea_emulator_json(&w->emulator), &json));
-  char *path = dea_path_join(ctx, options->folder, "emulator.json");
-  dea_status status = path != NULL ? dea_file_write(ctx, path, json, strlen(json)) : DEA_E_MEMORY;
-  dea_free(ctx, path);
+  dea_status status = dea_text_file_write(ctx, options->folder, "emulator.json", json);
   dea_free(ctx, json);
   if (status == DEA_OK && options->at_count > 0) {
     status = find_shares(w, options, share);
@@ -156,13 +149,9 @@ dea_status dea_sweep_emulate(const struct dea_design_space *space, const struct 
 {
   struct dea_context *ctx = space->ctx;
   struct work w = {.space = space, .memory = {.ctx = ctx}};
-  bool whole = false;
-  if (plan->nodes == NULL) {
-    return dea_fail(ctx, DEA_E_DESIGN, "--at is of the plan sparse-grid");
-  }
   void *before = dea_c_locale_enter();
-  dea_status status = gather(&w, plan, &whole);
-  if (status == DEA_OK && whole) {
+  dea_status status = gather(&w, plan);
+  if (status == DEA_OK) {
     status = dea_emulator_build(ctx, &w.emulator);
     status = status == DEA_OK ? emulate(&w, options, at) : status;
     dea_emulator_free(ctx, &w.emulator);
