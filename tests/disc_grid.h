@@ -51,8 +51,9 @@ static dea_status disc_mesh(struct dea_context *in, const struct dea_fibre_disc 
                                     .bond_thickness_m = p->glue_thickness};
   const struct dea_model_settings settings = {.order_z = p->order_z, .elements_z = p->through};
   const struct dea_layout_mesh other = {.cuts = like != NULL ? *like : *p};
+  bool fit;
   dea_status status =
-      dea_disc_mesh_create(in, &device, &settings, p, like != NULL ? &other : NULL, out);
+      dea_disc_mesh_create(in, &device, &settings, p, like != NULL ? &other : NULL, out, &fit);
   for (size_t e = 0; status == DEA_OK && e < out->grid->element_count; e++) {
     out->grid->ply[e] = disc_ply(out->layout->plies[out->grid->ply[e]].name);
   }

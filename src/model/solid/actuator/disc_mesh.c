@@ -12,8 +12,9 @@
  * without them it is four times as large. */
 static const double size_share = 0.26, beside_share = 0.13, edge_share = 0.0125;
 
-void dea_fibre_disc_of_device(const struct dea_device *d, const struct dea_model_settings *settings,
-                              struct dea_fibre_disc *out)
+/* The plate of a disc, on the domain and with the mesh that the settings name. */
+static void find_plate(const struct dea_device *d, const struct dea_model_settings *settings,
+                       struct dea_fibre_disc *out)
 {
   double finer = exp2(1 - fmax(1, settings->refinement)), a = d->electrode_radius_m;
   double l = d->pre_stretch;
@@ -95,23 +96,22 @@ static void copy_numbers(const struct dea_layout *from, struct dea_layout *to)
   to->channels[1].own_V = from->channels[1].own_V;
 }
 
+/* *fit: whether blocks have all that the layout names, else there is no mesh. */
 static dea_status build_plane(struct dea_context *ctx, const struct dea_device *device,
-                              struct dea_layout_mesh *mesh)
+                              struct dea_layout_mesh *mesh, bool *fit)
 {
-  const struct dea_fibre_disc *p = &mesh->plate;
   struct dea_device disc = *device;
-  bool fit;
   disc.angle_rad = mesh->sector.angle_rad;
   DEA_TRY(ctx, dea_disc_layout_create(ctx, &disc, mesh->membrane, &mesh->own));
-  DEA_TRY(ctx, dea_disc_layout_add_monitors(ctx, device, mesh->own, &fit));
-  if (!fit) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a monitor's region");
+  DEA_TRY(ctx, dea_disc_layout_add_monitors(ctx, device, mesh->own, fit));
+  if (!*fit) {
+    return DEA_OK;
   }
   if (!device->disc && device->layout != NULL) {
     copy_numbers(device->layout, mesh->own);
   }
   mesh->layout = mesh->own;
-  DEA_TRY(ctx, dea_fibre_disc_plane(ctx, p, &mesh->cuts, &mesh->plane));
+  DEA_TRY(ctx, dea_fibre_disc_plane(ctx, &mesh->plate, &mesh->cuts, &mesh->plane));
   const struct dea_motion turn = dea_motion_rotation((double[2]){0, 0}, disc.angle_rad);
   for (size_t i = 0; i < mesh->plane->node_count && disc.angle_rad != 0; i++) {
     dea_motion_apply(&turn, mesh->plane->x + 2 * i, mesh->plane->x + 2 * i);
@@ -122,7 +122,8 @@ static dea_status build_plane(struct dea_context *ctx, const struct dea_device *
 dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device *device,
                                 const struct dea_model_settings *settings,
                                 const struct dea_fibre_disc *plate,
-                                const struct dea_layout_mesh *like, struct dea_layout_mesh *out)
+                                const struct dea_layout_mesh *like, struct dea_layout_mesh *out,
+                                bool *fit)
 {
   const bool whole = plate->sectors == dea_fibre_disc_sectors(plate);
   *out = (struct dea_layout_mesh){
@@ -134,42 +135,29 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
       .sector = {.angle_rad = like != NULL ? like->sector.angle_rad : device->angle_rad,
                  .fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
       .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
-  DEA_TRY_ELSE(ctx, build_plane(ctx, device, out), dea_layout_mesh_free(ctx, out));
-  return DEA_CHAIN(ctx, like != NULL ? dea_layout_mesh_fill_like(ctx, settings, like, out)
-                                     : dea_layout_mesh_fill(ctx, settings, out));
-}
-
-/* Whether blocks are the mesh: of a disc about the origin, of which nothing else is asked for. */
-static dea_status find_blocks(struct dea_context *ctx, const struct dea_device *device,
-                              const struct dea_model_settings *settings, bool *blocks)
-{
-  struct dea_layout *layout;
-  *blocks = device->disc && device->centre_m[0] == 0 && device->centre_m[1] == 0 &&
-            settings->adapt.monitor == NULL && settings->size_count == 0;
-  if (!*blocks) {
+  DEA_TRY_ELSE(ctx, build_plane(ctx, device, out, fit), dea_layout_mesh_free(ctx, out));
+  if (!*fit) {
+    dea_layout_mesh_free(ctx, out);
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_disc_layout_create(ctx, device, settings->film == DEA_FILM_MEMBRANE, &layout));
-  const dea_status status = dea_disc_layout_add_monitors(ctx, device, layout, blocks);
-  dea_layout_destroy(ctx, layout);
-  return status;
+  return DEA_CHAIN(ctx, dea_layout_mesh_fill(ctx, settings, like, out));
 }
 
+/* Blocks are the mesh of a disc about the origin, of which nothing else is asked for. */
 dea_status dea_device_mesh_create(struct dea_context *ctx, const struct dea_device *device,
                                   const struct dea_model_settings *settings,
                                   struct dea_layout_mesh *out)
 {
+  bool blocks = device->disc && device->centre_m[0] == 0 && device->centre_m[1] == 0 &&
+                settings->adapt.monitor == NULL && settings->size_count == 0;
   struct dea_fibre_disc plate;
-  bool blocks;
   *out = (struct dea_layout_mesh){0};
-  DEA_TRY(ctx, find_blocks(ctx, device, settings, &blocks));
-  if (!blocks) {
-    DEA_TRY(ctx, dea_layout_mesh_create(ctx, device->layout, settings, out));
-  } else {
-    dea_fibre_disc_of_device(device, settings, &plate);
-    DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, NULL, out));
+  if (blocks) {
+    find_plate(device, settings, &plate);
+    DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, NULL, out, &blocks));
   }
-  return DEA_OK;
+  return DEA_CHAIN(ctx,
+                   blocks ? DEA_OK : dea_layout_mesh_create(ctx, device->layout, settings, out));
 }
 
 /* The disc that a mesh is of with the layout of what is no disc any more: of the same shapes. */
@@ -196,14 +184,18 @@ dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_devi
 {
   struct dea_fibre_disc plate;
   struct dea_device near;
+  bool fit;
   *out = (struct dea_layout_mesh){0};
   if (like->plate.order == 0) {
     return DEA_CHAIN(ctx, dea_mesh_follow(ctx, device->layout, settings, like, out));
   }
   DEA_TRY(ctx, !device->disc ? find_near(ctx, device, like, &near) : DEA_OK);
   const struct dea_device *disc = device->disc ? device : &near;
-  dea_fibre_disc_of_device(disc, settings, &plate);
-  DEA_TRY(ctx, dea_disc_mesh_create(ctx, disc, settings, &plate, like, out));
+  find_plate(disc, settings, &plate);
+  DEA_TRY(ctx, dea_disc_mesh_create(ctx, disc, settings, &plate, like, out, &fit));
+  if (!fit) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a monitor's region");
+  }
   out->disc = device;
   return DEA_OK;
 }

@@ -27,30 +27,32 @@ static const double least_share = 1e-6; // of the area of all: what is smaller i
 
 // Plane ------------------------------------------------------------------------------------------
 
-void dea_layout_mesh_used(const struct dea_layout *l, bool *used)
+void dea_layout_mesh_roles(const struct dea_layout *l, unsigned *roles)
 {
-  memset(used, 0, l->region_count * sizeof *used);
+  memset(roles, 0, l->region_count * sizeof *roles);
   for (size_t i = 0; i < l->ply_count; i++) {
-    used[l->plies[i].region] = true;
+    roles[l->plies[i].region] |= DEA_REGION_STRETCHES;
   }
   for (size_t i = 0; i < l->electrode_count; i++) {
-    used[l->electrodes[i].region] = true;
-  }
-  for (size_t i = 0; i < l->support_count; i++) {
-    used[l->supports[i].region] = true;
+    roles[l->electrodes[i].region] |= DEA_REGION_STRETCHES;
   }
   for (size_t i = 0; i < l->body_count; i++) {
-    used[l->bodies[i].region] = true;
+    roles[l->bodies[i].region] |= DEA_REGION_STRETCHES | DEA_REGION_RIGID;
+  }
+  for (size_t i = 0; i < l->support_count; i++) {
+    const struct dea_layout_support *s = &l->supports[i];
+    const bool all = !s->edge && s->components != 0 && s->within == DEA_LAYOUT_NONE;
+    roles[s->region] |= DEA_REGION_SUPPORTS | (all ? DEA_REGION_RIGID : 0);
   }
   for (size_t i = 0; i < l->pressure_count; i++) {
-    used[l->pressures[i].region] = true;
+    roles[l->pressures[i].region] |= DEA_REGION_OTHER;
   }
   for (size_t i = 0; i < l->contact_count; i++) {
-    used[l->contacts[i].region] = true;
+    roles[l->contacts[i].region] |= DEA_REGION_OTHER;
   }
   for (size_t i = 0; i < l->monitor_count; i++) {
     if (l->monitors[i].kind == DEA_MONITOR_REGION) {
-      used[l->monitors[i].region] = true;
+      roles[l->monitors[i].region] |= DEA_REGION_OTHER;
     }
   }
 }
@@ -64,30 +66,15 @@ static double largest_ply_m2(const struct dea_layout *l)
   return largest;
 }
 
-/* Whether the film's stretch changes at the boundary of a region. */
-static bool is_fine(const struct dea_layout *l, size_t region, double largest_m2)
-{
-  bool fine = false;
-  for (size_t i = 0; i < l->electrode_count; i++) {
-    fine = fine || l->electrodes[i].region == region;
-  }
-  for (size_t i = 0; i < l->body_count; i++) {
-    fine = fine || l->bodies[i].region == region;
-  }
-  for (size_t i = 0; i < l->ply_count; i++) {
-    fine = fine || l->plies[i].region == region;
-  }
-  return fine && dea_region_area_m2(&l->regions[region].region) < (1 - 1e-9) * largest_m2;
-}
-
 /* Of elements along the boundary of a region. */
-static double size_at_edge(const struct dea_layout *l, size_t region, double largest_m2,
+static double size_at_edge(const struct dea_region *region, unsigned roles, double largest_m2,
                            double size_m, double finer, bool layered)
 {
+  const double area_m2 = dea_region_area_m2(region);
   const double share = layered ? layered_edge_share : edge_share;
-  const struct dea_region *r = &l->regions[region].region;
-  double across = across_share * dea_region_area_m2(r) / dea_region_boundary_m(r);
-  return fmin(is_fine(l, region, largest_m2) ? share * size_m : size_m, across * finer);
+  const bool fine = (roles & DEA_REGION_STRETCHES) != 0 && area_m2 < (1 - 1e-9) * largest_m2;
+  const double across = across_share * area_m2 / dea_region_boundary_m(region);
+  return fmin(fine ? share * size_m : size_m, across * finer);
 }
 
 /* Thickness of what is between electrodes, or of all plies. */
@@ -114,30 +101,6 @@ static bool is_stretched(const struct dea_layout *l)
     any = any || l->plies[p].pre_stretch[0] != 1 || l->plies[p].pre_stretch[1] != 1;
   }
   return any;
-}
-
-/* Whether the motion through the thickness changes at the boundary of a region. */
-static bool has_layer(const struct dea_layout *l, size_t region)
-{
-  bool layer = is_fine(l, region, INFINITY);
-  for (size_t i = 0; i < l->support_count; i++) {
-    layer = layer || l->supports[i].region == region;
-  }
-  return layer;
-}
-
-/* Whether all of a region is held or moves as one. */
-static bool is_rigid(const struct dea_layout *l, size_t region)
-{
-  bool rigid = false;
-  for (size_t i = 0; i < l->support_count; i++) {
-    rigid = rigid || (l->supports[i].region == region && !l->supports[i].edge &&
-                      l->supports[i].components != 0 && l->supports[i].within == DEA_LAYOUT_NONE);
-  }
-  for (size_t i = 0; i < l->body_count; i++) {
-    rigid = rigid || l->bodies[i].region == region;
-  }
-  return rigid;
 }
 
 /* All plies, and the sector, of which no more than these is left; an empty one: the whole. */
@@ -245,7 +208,7 @@ static struct dea_contour *contours_of(struct dea_arena *memory, const struct de
 /* The layout's regions as shapes, clipped ones in their place; their contours come from `memory`.
  * Where a sector cuts a region nothing changes, so sizes there are not those at its boundary. */
 static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_mesh *mesh,
-                            const struct dea_model_settings *settings,
+                            const struct dea_model_settings *settings, const unsigned *roles,
                             const struct dea_region *clipped, struct dea_gmsh_plan *plan)
 {
   const struct dea_layout *l = mesh->layout;
@@ -274,9 +237,10 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
         .name = l->regions[i].name,
         .contours = contours_of(memory, region),
         .count = region->contour_count,
-        .edge_size_m = size_at_edge(l, i, largest_m2, plan->size_m, finer, layer_m > 0),
-        .layer_m = has_layer(l, i) ? layer_m : 0,
-        .rigid = is_rigid(l, i)};
+        .edge_size_m = size_at_edge(&l->regions[i].region, roles[i], largest_m2, plan->size_m,
+                                    finer, layer_m > 0),
+        .layer_m = (roles[i] & (DEA_REGION_STRETCHES | DEA_REGION_SUPPORTS)) != 0 ? layer_m : 0,
+        .rigid = (roles[i] & DEA_REGION_RIGID) != 0};
     if (mesh->sector.fold > 0) {
       curves[plan->curve_count] = *shape;
       curves[plan->curve_count].contours = contours_of(memory, &l->regions[i].region);
@@ -310,19 +274,19 @@ static dea_status build_plane(struct dea_context *ctx, const struct dea_model_se
   const struct dea_layout *l = mesh->layout;
   struct dea_arena memory = {.ctx = ctx};
   struct dea_gmsh_plan plan;
-  bool *used = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *used);
+  unsigned *roles = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *roles);
   mesh->group = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *mesh->group);
   DEA_TRY(ctx, dea_arena_status(&mesh->memory));
-  dea_layout_mesh_used(l, used);
+  dea_layout_mesh_roles(l, roles);
   for (size_t i = 0; i < l->region_count; i++) {
-    mesh->group[i] = used[i] ? 0 : DEA_LAYOUT_NONE;
+    mesh->group[i] = roles[i] != 0 ? 0 : DEA_LAYOUT_NONE;
   }
   struct dea_region *clipped = dea_arena_alloc(&memory, l->region_count, sizeof *clipped);
   dea_status status = clipped != NULL ? clip(ctx, mesh, clipped) : DEA_E_MEMORY;
   for (size_t i = 0, groups = 0; i < l->region_count; i++) {
     mesh->group[i] = mesh->group[i] != DEA_LAYOUT_NONE ? groups++ : DEA_LAYOUT_NONE;
   }
-  status = status == DEA_OK ? fill_plan(&memory, mesh, settings, clipped, &plan) : status;
+  status = status == DEA_OK ? fill_plan(&memory, mesh, settings, roles, clipped, &plan) : status;
   if (status == DEA_OK && settings->size_count > 0) {
     get_sizes(settings, &plan);
   }
@@ -562,19 +526,10 @@ static dea_status fill(struct dea_context *ctx, const struct dea_model_settings 
 }
 
 dea_status dea_layout_mesh_fill(struct dea_context *ctx, const struct dea_model_settings *settings,
-                                struct dea_layout_mesh *mesh)
+                                const struct dea_layout_mesh *like, struct dea_layout_mesh *mesh)
 {
   DEA_TRY_ELSE(ctx, fill(ctx, settings, mesh), dea_layout_mesh_free(ctx, mesh));
-  return DEA_OK;
-}
-
-dea_status dea_layout_mesh_fill_like(struct dea_context *ctx,
-                                     const struct dea_model_settings *settings,
-                                     const struct dea_layout_mesh *like,
-                                     struct dea_layout_mesh *mesh)
-{
-  DEA_TRY(ctx, dea_layout_mesh_fill(ctx, settings, mesh));
-  const struct dea_grid *a = mesh->grid, *b = like->grid;
+  const struct dea_grid *a = mesh->grid, *b = like != NULL ? like->grid : a;
   if (a->element_count != b->element_count ||
       memcmp(a->nodes, b->nodes, a->element_count * DEA_HEX_NODES_MAX * sizeof *a->nodes) != 0) {
     dea_layout_mesh_free(ctx, mesh);
@@ -594,24 +549,7 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
     out->sector = dea_layout_sector_of(layout);
   }
   DEA_TRY_ELSE(ctx, build_plane(ctx, settings, out), dea_layout_mesh_free(ctx, out));
-  return DEA_CHAIN(ctx, dea_layout_mesh_fill(ctx, settings, out));
-}
-
-dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea_layout *layout,
-                                       const struct dea_model_settings *settings,
-                                       const struct dea_layout_mesh *like,
-                                       struct dea_plane_mesh *plane, struct dea_arena *memory,
-                                       struct dea_layout_mesh *out)
-{
-  *out = (struct dea_layout_mesh){.memory = *memory,
-                                  .layout = layout,
-                                  .membrane = like->membrane,
-                                  .sector = like->sector,
-                                  .plane = plane,
-                                  .like = true,
-                                  .group = like->group};
-  *memory = (struct dea_arena){.ctx = ctx};
-  return DEA_CHAIN(ctx, dea_layout_mesh_fill_like(ctx, settings, like, out));
+  return DEA_CHAIN(ctx, dea_layout_mesh_fill(ctx, settings, NULL, out));
 }
 
 void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh)

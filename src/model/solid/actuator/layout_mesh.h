@@ -42,25 +42,20 @@ struct dea_layout_mesh {
 dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layout *layout,
                                   const struct dea_model_settings *settings,
                                   struct dea_layout_mesh *out);
-/* All but layout, plane, groups and sector, which are there. On failure the mesh is freed.
- * dea_layout_mesh_fill_like: with the elements of another one, else DEA_E_ARGUMENT. */
+/* All but layout, plane, groups and sector, which are there. like: with the elements of that mesh,
+ * else DEA_E_ARGUMENT; NULL: any. On failure the mesh is freed. */
 dea_status dea_layout_mesh_fill(struct dea_context *ctx, const struct dea_model_settings *settings,
-                                struct dea_layout_mesh *mesh);
-dea_status dea_layout_mesh_fill_like(struct dea_context *ctx,
-                                     const struct dea_model_settings *settings,
-                                     const struct dea_layout_mesh *like,
-                                     struct dea_layout_mesh *mesh);
-/* What mesh_follow.h makes: the mesh of another layout with as many regions and plies as that of
- * `like`, which outlives it, on a plane mesh with the elements of that one. memory: of the plane
- * mesh; it becomes the mesh's. DEA_E_ARGUMENT where other elements come of it. */
-dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea_layout *layout,
-                                       const struct dea_model_settings *settings,
-                                       const struct dea_layout_mesh *like,
-                                       struct dea_plane_mesh *plane, struct dea_arena *memory,
-                                       struct dea_layout_mesh *out);
-/* Marks what is meshed of a layout, all of it taken: regions with parts in them. used:
- * [region_count]. */
-void dea_layout_mesh_used(const struct dea_layout *layout, bool *used);
+                                const struct dea_layout_mesh *like, struct dea_layout_mesh *mesh);
+/* What regions of a layout, all of it taken, are of, as bits into roles [region_count]: of what
+ * changes the stretch at their boundary, of supports, of what is held or moves as one, of other
+ * things; 0: it is not meshed. */
+enum {
+  DEA_REGION_STRETCHES = 1,
+  DEA_REGION_SUPPORTS = 2,
+  DEA_REGION_RIGID = 4,
+  DEA_REGION_OTHER = 8
+};
+void dea_layout_mesh_roles(const struct dea_layout *layout, unsigned *roles);
 void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh);
 
 /* Whether a region of the plane mesh, or an element, lies in a region of the layout. */

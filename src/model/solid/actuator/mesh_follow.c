@@ -149,23 +149,23 @@ static dea_status find_outlines(struct dea_context *ctx, struct work *w,
 {
   const struct dea_layout *own = w->like->layout;
   size_t pieces = 0;
-  bool *used = dea_arena_alloc(&w->memory, own->region_count, sizeof *used);
+  unsigned *roles = dea_arena_alloc(&w->memory, own->region_count, sizeof *roles);
   bool *ends = dea_arena_alloc(&w->memory, own->region_count, sizeof *ends);
   for (size_t i = 0; i < own->region_count; i++) {
     pieces += own->regions[i].region.vertex_count;
   }
   w->outline = dea_arena_alloc(&w->memory, pieces, sizeof *w->outline);
   DEA_TRY(ctx, dea_arena_status(&w->memory));
-  dea_layout_mesh_used(own, used);
+  dea_layout_mesh_roles(own, roles);
   for (size_t i = 0; i < own->region_count; i++) {
-    if (used[i]) {
+    if (roles[i] != 0) {
       DEA_TRY(ctx, add_region(ctx, w, &own->regions[i].region, &layout->regions[i].region,
                               w->outline, &w->outline_count));
     }
   }
   for (size_t i = 0; i < own->support_count; i++) {
     const size_t end = own->supports[i].within;
-    if (end != DEA_LAYOUT_NONE && !used[end] && !ends[end]) {
+    if (end != DEA_LAYOUT_NONE && roles[end] == 0 && !ends[end]) {
       ends[end] = true;
       DEA_TRY(ctx, add_region(ctx, w, &own->regions[end].region, &layout->regions[end].region,
                               w->outline + w->outline_count, &w->end_count));
@@ -596,20 +596,21 @@ dea_status dea_mesh_follow(struct dea_context *ctx, const struct dea_layout *lay
                            const struct dea_model_settings *settings,
                            const struct dea_layout_mesh *like, struct dea_layout_mesh *out)
 {
-  struct dea_arena memory = {.ctx = ctx};
-  struct dea_plane_mesh *plane = like->plane;
-  dea_status status = DEA_OK;
-  *out = (struct dea_layout_mesh){.memory = {.ctx = ctx}};
+  *out = (struct dea_layout_mesh){.memory = {.ctx = ctx},
+                                  .layout = layout,
+                                  .membrane = like->membrane,
+                                  .sector = like->sector,
+                                  .plane = like->plane,
+                                  .like = true,
+                                  .group = like->group};
   if (layout->region_count != like->layout->region_count ||
       layout->ply_count != like->layout->ply_count) {
+    *out = (struct dea_layout_mesh){0};
     return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow: there are other parts");
   }
   if (!same_regions(layout, like->layout)) {
-    status = move_plane(ctx, like, layout, &memory, &plane);
+    DEA_TRY_ELSE(ctx, move_plane(ctx, like, layout, &out->memory, &out->plane),
+                 dea_layout_mesh_free(ctx, out));
   }
-  status = status == DEA_OK
-               ? dea_layout_mesh_create_like(ctx, layout, settings, like, plane, &memory, out)
-               : status;
-  dea_arena_free(&memory);
-  return DEA_CHAIN(ctx, status);
+  return DEA_CHAIN(ctx, dea_layout_mesh_fill(ctx, settings, like, out));
 }
