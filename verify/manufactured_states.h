@@ -3,6 +3,8 @@
 
 #include "manufactured.h"
 
+#include "model/solid/assembly/potential.h"
+#include "model/solid/assembly/problem.h"
 #include "model/solid/element/hex.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/model3d/solid_state.h"
@@ -136,7 +138,9 @@ static inline void prepare(const struct exact *exact, const struct dea_grid *gri
     exit(1);
   }
   add_sources(exact, grid, &to);
-  dea_solid_set_charge(solid, to.q);
+  for (size_t n = 0; n < grid->node_count && solid->problem.field != NULL; n++) {
+    solid->state.force_goal[3 * grid->node_count + n] = -dea_solid_field_scale(solid) * to.q[n];
+  }
   free(to.q);
   for (size_t n = 0; n < grid->node_count; n++) {
     const double *X = grid->X + 3 * n;
@@ -178,7 +182,9 @@ static inline void solve(const struct exact *exact, struct dea_grid *grid, doubl
   if (phi == NULL) {
     exit(1);
   }
-  dea_solid_potential(solid, phi);
+  for (size_t n = 0; n < grid->node_count && exact->potential != NULL; n++) {
+    phi[n] = dea_solid_field_scale(solid) * solid->state.u[3 * grid->node_count + n];
+  }
   size_t pressures = (size_t)shape.pressures, all = grid->element_count * pressures;
   size_t dofs = (exact->potential != NULL ? 4 : 3) * grid->node_count;
   const double *values = dea_state_find(&state, "state", dofs + all);

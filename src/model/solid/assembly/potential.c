@@ -265,21 +265,3 @@ dea_status dea_solid_scale_potential(struct dea_context *ctx, struct dea_solid *
   dea_solid_hold_potential(s, voltage_V, u);
   return DEA_OK;
 }
-
-void dea_solid_potential(const struct dea_solid *solid, double *potential_V)
-{
-  size_t nodes = solid->problem.grid->node_count;
-  for (size_t n = 0; n < nodes; n++) {
-    potential_V[n] = solid->problem.field == NULL
-                         ? NAN
-                         : solid->problem.field->scale_V_per_m * solid->state.u[3 * nodes + n];
-  }
-}
-
-void dea_solid_set_charge(struct dea_solid *solid, const double *charge_C)
-{
-  size_t nodes = solid->problem.grid->node_count;
-  for (size_t n = 0; n < nodes && solid->problem.field != NULL; n++) {
-    solid->state.force_goal[3 * nodes + n] = -solid->problem.field->scale_V_per_m * charge_C[n];
-  }
-}

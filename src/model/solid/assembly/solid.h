@@ -106,12 +106,6 @@ double *dea_solid_displacement(struct dea_solid *solid);
 /* Dead loads on the nodes [node_count][3] [N] that the next solve goes to, lent; at first 0. */
 double *dea_solid_force(struct dea_solid *solid);
 
-/* Potentials [node_count] of a coupled field; NAN of a thin film. */
-void dea_solid_potential(const struct dea_solid *solid, double *potential_V);
-
-/* Free charges on the nodes [node_count] of a coupled field; at first 0. */
-void dea_solid_set_charge(struct dea_solid *solid, const double *charge_C);
-
 /* Holds components (bits 1, 2, 4) of a node; the next solve moves them to these displacements.
  * Components are those of the node's local axes. */
 dea_status dea_solid_prescribe(struct dea_context *ctx, struct dea_solid *solid, size_t node,

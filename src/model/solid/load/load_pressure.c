@@ -47,11 +47,6 @@ void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa)
   pressure->goal = pressure_Pa;
 }
 
-double dea_pressure_get(const struct dea_pressure *pressure)
-{
-  return pressure->now;
-}
-
 static void cross(const double a[3], const double b[3], double out[3])
 {
   for (int i = 0; i < 3; i++) {

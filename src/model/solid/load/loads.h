@@ -77,8 +77,6 @@ void dea_pressure_stiffen(struct dea_pressure *pressure, const double *u, double
 void dea_pressure_hold(struct dea_pressure *pressure, const struct dea_pressure *other);
 /* Pressure that the next solve goes to, positive into the body. */
 void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa);
-/* As it stands: the last goal, or how far a solve came. */
-double dea_pressure_get(const struct dea_pressure *pressure);
 struct dea_solid_load dea_pressure_load(struct dea_pressure *pressure);
 
 /* ---- contact with a rigid tip or another surface, without friction ---- */
