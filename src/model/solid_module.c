@@ -115,24 +115,20 @@ static void accept(struct dea_model *model)
   dea_solid_leave(DEA_OK);
 }
 
-static const struct dea_event *limit(const struct dea_model *model)
-{
-  return module_of(model)->limit(model);
-}
+/* A function of struct dea_model_type that lends something of a model. */
+#define LENT(result, name)                                                                         \
+  static result name(const struct dea_model *model)                                                \
+  {                                                                                                \
+    return module_of(model)->name(model);                                                          \
+  }
 
-static const struct dea_event *passed(const struct dea_model *model)
-{
-  return module_of(model)->passed(model);
-}
+LENT(const struct dea_event *, limit)
+LENT(const struct dea_event *, passed)
+LENT(const double *, answers)
 
 static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t *count)
 {
   return module_of(model)->passes(model, count);
-}
-
-static const double *answers(const struct dea_model *model)
-{
-  return module_of(model)->answers(model);
 }
 
 static void size(const struct dea_model *model, struct dea_model_size *out)
