@@ -54,6 +54,13 @@ static const double *first_monitor(struct dea_model *model)
   return seen.monitor[0];
 }
 
+static double current_of_channel_A(struct dea_model *model)
+{
+  struct dea_observation seen;
+  assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
+  return seen.channel[1].current_A;
+}
+
 /* What the supply gave and no energy has taken, over what it gave. */
 static double unaccounted(const struct dea_load_point *start, const struct dea_load_point *p)
 {
@@ -202,6 +209,7 @@ TEST(test_disc_of_both_models)
     assert_close(first_monitor(free_mesh)[DEA_OBSERVED_X], of_blocks.electrode_edge_u_m, 1e-3, 0);
     assert_close(of_free.capacitance_F, of_blocks.capacitance_F, 1e-4, 0);
     assert_close(of_free.dissipated_J, of_blocks.dissipated_J, 1e-3, 0);
+    assert_close(current_of_channel_A(free_mesh), current_of_channel_A(blocks), 1e-3, 0);
   }
   dea_model_find("3d")->destroy(ctx, blocks);
   dea_model_find("3d")->destroy(ctx, free_mesh);

@@ -237,7 +237,7 @@ static void check_state(const struct strip *s, double a, double b, const double 
       volume_m3 += at.volume_m3[q];
     }
     struct dea_recovered whole;
-    assert_int_equal(dea_recover_element(&s->in, e, &whole), DEA_OK);
+    assert_int_equal(dea_recover_element(ctx, &s->in, e, &whole), DEA_OK);
     assert_close(volume_m3, whole.volume_m3, 1e-12, 0);
   }
 }

@@ -821,7 +821,7 @@ static const double *array(struct dea_solid_object *object, const char *name, co
 static dea_status mesh(struct dea_context *ctx, const struct dea_solid_object *object,
                        struct dea_field_mesh **out)
 {
-  return DEA_CHAIN(ctx, dea_solid_volume(ctx, object->solid, out));
+  return DEA_CHAIN(ctx, dea_solid_fields(ctx, object->solid, DEA_ALL_PLIES, out));
 }
 
 static bool number(const struct dea_solid_object *object, const char *name, double *out)

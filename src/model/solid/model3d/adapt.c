@@ -18,7 +18,7 @@ static bool has_error(const struct dea_load_point *point)
 }
 
 /* Of the main motion of a monitor at a point without a doubt; otherwise, and of a body that is held
- * along it, NAN. part: of each element, may be NULL. */
+ * along it, NAN. weight: room, [dofs]; part: of each element, may be NULL. */
 static dea_status find_error(struct dea_context *ctx, struct dea_model *model, size_t monitor,
                              const double *values, double *weight, double *error, double *part)
 {
@@ -32,7 +32,7 @@ static dea_status find_error(struct dea_context *ctx, struct dea_model *model, s
     }
   }
   dea_observer_gradient(model->observer, model->solid, monitor, motion, weight);
-  struct dea_solid_quantity one = {.weight = weight};
+  struct dea_recover_quantity one = {.z = weight};
   one.probe_count = dea_observer_probes(model->observer, model->solid, monitor, motion, one.probes);
   dea_status status = dea_solid_errors(ctx, model->solid, &one, 1, error, part);
   return status == DEA_E_DOMAIN ? DEA_OK : status; // at the end of a law none is known
@@ -50,7 +50,7 @@ dea_status dea_solid_model_errors(struct dea_context *ctx, struct dea_model *mod
   if (!has_error(&point)) {
     return DEA_OK;
   }
-  double *weight = dea_solid_alloc(ctx, 3 * model->mesh.grid->node_count, sizeof *weight);
+  double *weight = dea_solid_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
   dea_status status = weight == NULL ? DEA_E_MEMORY : DEA_OK;
   for (size_t i = 0; i < seen.monitor_count && status == DEA_OK; i++) {
     status = find_error(ctx, model, i, seen.monitor[i], weight, &error[i], NULL);
@@ -85,36 +85,19 @@ static double area_of(const struct dea_plane_mesh *plane, size_t q, double middl
   return area;
 }
 
-/* What the elements above an element of the plane mesh add together. */
-static dea_status gather(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                         const double *part, double *sum)
+/* What the elements above an element of the plane mesh add together: each layer of a ply has those
+ * of the plane mesh in their order. */
+static void gather(const struct dea_layout_mesh *mesh, const double *part, double *sum)
 {
   const struct dea_plane_mesh *plane = mesh->plane;
-  const struct dea_grid *grid = mesh->grid;
-  size_t per = (size_t)((plane->order + 1) * (plane->order + 1));
-  int *next = dea_alloc(ctx, plane->quad_count, sizeof *next); // with the same first node, from 1
-  int *first = dea_alloc(ctx, plane->node_count, sizeof *first);
-  if (next == NULL || first == NULL) {
-    dea_free(ctx, next);
-    dea_free(ctx, first);
-    return DEA_E_MEMORY;
-  }
-  for (size_t q = 0; q < plane->quad_count; q++) {
-    int *of = &first[plane->quads[q * per]];
-    next[q] = *of;
-    *of = (int)q + 1;
-  }
-  for (size_t e = 0; e < grid->element_count; e++) {
-    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
-    int q = first[grid->column[nodes[0]]];
-    while (plane->quads[(size_t)q * per - 1] != grid->column[nodes[per - 1]]) {
-      q = next[q - 1];
+  for (size_t e = 0; e < mesh->grid->element_count;) {
+    const size_t ply = (size_t)mesh->grid->ply[e];
+    for (size_t q = 0; q < plane->quad_count; q++) {
+      if (mesh->present[(size_t)plane->region[q] * mesh->layout->ply_count + ply]) {
+        sum[q] += fabs(part[e++]);
+      }
     }
-    sum[q - 1] += fabs(part[e]);
   }
-  dea_free(ctx, next);
-  dea_free(ctx, first);
-  return DEA_OK;
 }
 
 /* Sizes of the next mesh. part: [element_count], as dea_recover_errors; wanted: error that it
@@ -124,17 +107,18 @@ static dea_status find_sizes(struct dea_context *ctx, const struct dea_layout_me
 {
   size_t count = mesh->plane->quad_count;
   double *sum = dea_alloc(ctx, count, sizeof *sum), roots = 0;
-  dea_status status = sum != NULL ? gather(ctx, mesh, part, sum) : DEA_E_MEMORY;
-  for (size_t q = 0; q < count && status == DEA_OK; q++) {
+  DEA_TRY_MEMORY(sum != NULL);
+  gather(mesh, part, sum);
+  for (size_t q = 0; q < count; q++) {
     roots += sqrt(sum[q]);
   }
-  for (size_t q = 0; q < count && status == DEA_OK; q++) {
+  for (size_t q = 0; q < count; q++) {
     double ratio = sqrt(share * wanted / (roots * sqrt(sum[q])));
     double size = sqrt(area_of(mesh->plane, q, at[q]));
     at[q][2] = size * fmin(coarsest, fmax(finest, ratio)); // coarsest where the sum is 0
   }
   dea_free(ctx, sum);
-  return status;
+  return DEA_OK;
 }
 
 // Adaptive refinement ----------------------------------------------------------------------------
@@ -173,7 +157,7 @@ static dea_status estimate_mesh_error(struct dea_context *ctx, struct adaptation
                                   .unknowns = 3 * grid->node_count,
                                   .value = values[motion],
                                   .error = NAN};
-  double *weight = dea_alloc(ctx, 3 * grid->node_count, sizeof *weight);
+  double *weight = dea_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
   double *part = dea_alloc(ctx, grid->element_count, sizeof *part);
   double(*at)[3] = dea_resize(ctx, a->next, model->mesh.plane->quad_count, sizeof *at);
   a->next = at != NULL ? at : a->next;
@@ -223,15 +207,6 @@ static dea_status report_end(struct dea_context *ctx, const struct adaptation *a
                          a->settings.adapt.monitor, 1e-3 * a->settings.adapt.voltage_V);
 }
 
-/* Another model, on a mesh of the present sizes, in the place of *model. */
-static dea_status build_anew(struct dea_context *ctx, const struct adaptation *a,
-                             struct dea_model **model)
-{
-  dea_solid_model_destroy(ctx, *model);
-  *model = NULL;
-  return DEA_CHAIN(ctx, build(ctx, a->device, &a->settings, model));
-}
-
 /* To the mesh that is exact enough; *model: on it, at rest. */
 static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct dea_model **model)
 {
@@ -250,7 +225,9 @@ static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct de
       a->settings.sizes = (const double(*)[3])a->now;
       a->settings.size_count = a->next_count;
     }
-    DEA_TRY(ctx, build_anew(ctx, a, model)); // the last one too: to be at rest
+    dea_solid_model_destroy(ctx, *model);
+    *model = NULL;
+    DEA_TRY(ctx, build(ctx, a->device, &a->settings, model)); // the last one too: to be at rest
   }
   return DEA_CHAIN(ctx, report_end(ctx, a));
 }

@@ -53,6 +53,18 @@ static void find_middle(const struct wanted *wanted, const double *u, size_t n, 
   }
 }
 
+/* What brings the middle of a column of nodes [n, end) from where it is to a height, and leans the
+ * column by a factor: 1 leaves it, -1 turns it about. */
+static void move_column(const double *u, size_t n, size_t end, const double middle[3],
+                        double height_m, double lean, double *out)
+{
+  for (size_t k = 3 * n; k < 3 * end; k += 3) {
+    out[k] = (lean - 1) * (u[k] - middle[0]);
+    out[k + 1] = (lean - 1) * (u[k + 1] - middle[1]);
+    out[k + 2] = height_m - middle[2];
+  }
+}
+
 /* What turns each column on the other side about the middle of its film: that goes to its mirror
  * image, and the column leans to the other side with it. */
 static void set_push(const struct wanted *wanted, const double *u, double *push)
@@ -61,12 +73,8 @@ static void set_push(const struct wanted *wanted, const double *u, double *push)
   for (size_t n = 0, end; n < wanted->grid->node_count && wanted->grid->column[n] >= 0; n = end) {
     double middle[3];
     find_middle(wanted, u, n, &end, middle);
-    double part = wanted->sign * middle[2] < 0 ? 2 : 0;
-    for (size_t k = 3 * n; k < 3 * end; k += 3) {
-      push[k] = part * (middle[0] - u[k]);
-      push[k + 1] = part * (middle[1] - u[k + 1]);
-      push[k + 2] = -part * middle[2];
-    }
+    const double turns = wanted->sign * middle[2] < 0 ? -1 : 1;
+    move_column(u, n, end, middle, turns * middle[2], turns, push);
   }
 }
 
@@ -100,11 +108,7 @@ void dea_buckling_branch_fold(const struct dea_solid *solid, const struct dea_gr
   for (size_t n = 0, end; n < grid->node_count && grid->column[n] >= 0; n = end) {
     double middle[3];
     find_middle(&wanted, u, n, &end, middle);
-    double far = hypot(middle[2], h), slope = sign * middle[2] / far;
-    for (size_t k = 3 * n; k < 3 * end; k += 3) {
-      out[k] = (slope - 1) * (u[k] - middle[0]);
-      out[k + 1] = (slope - 1) * (u[k + 1] - middle[1]);
-      out[k + 2] = sign * (far - h) - middle[2];
-    }
+    const double far = hypot(middle[2], h);
+    move_column(u, n, end, middle, sign * (far - h), sign * middle[2] / far, out);
   }
 }

@@ -34,14 +34,14 @@ struct network {
 };
 
 struct dea_circuit_step {
-  struct dea_arena memory;              // of the next four lines
-  struct network network, network_next; // of has_network
-  double *own_V, *own_start_V;          // [channels] beside their shares
-  double *current_A;                    // [channels] of the last step, with all copies
-  bool *own_source;                     // [channels] of options
-  bool own;                             // any channel has a voltage of its own
+  struct dea_arena memory; // of the next four lines
+  struct network network, network_next;
+  double *own_V, *own_start_V; // [channels] beside their shares
+  double *current_A;           // [channels] of the last step, with all copies
+  bool *own_source;            // [channels] of options
+  bool own;                    // any channel has a voltage of its own
   const struct dea_model *model;
-  bool has_network;        // channels have currents, which are found; else the supply is on the one
+  bool coupled;            // the field: currents of channels are not found
   struct dea_sheet *sheet; // NULL: all electrodes are at the voltage of their channel
   struct dea_solid_time *time;
   struct dea_time_options options;
@@ -226,7 +226,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
                                                  .spectral_radius = d->options.rho_inf,
                                                  .own_voltages = d->own};
   struct dea_circuit_film film = {.capacitance_F = 0};
-  if (d->own && (!dea_circuit_is_ideal(&d->options.circuit) || !d->has_network)) {
+  if (d->own && (!dea_circuit_is_ideal(&d->options.circuit) || d->coupled)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "%s ideal sources: no series resistance and no limit of the current is known "
                     "of them",
@@ -235,14 +235,12 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
   }
   find_leakage(d);
   DEA_TRY(ctx, dea_solid_time_create(ctx, solid, &options, &d->time));
-  if (d->has_network) {
-    DEA_TRY(ctx, dea_solid_allreduce(ctx, allocate_network(d)));
-    memcpy(d->own_start_V, solid->state.own_V, count * sizeof *d->own_V);
-    if (own_sources) {
-      memcpy(d->own_source, d->options.own_sources, count * sizeof *d->own_source);
-    }
-    DEA_TRY(ctx, find_network(ctx, d, &d->network));
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, allocate_network(d)));
+  memcpy(d->own_start_V, solid->state.own_V, count * sizeof *d->own_V);
+  if (own_sources) {
+    memcpy(d->own_source, d->options.own_sources, count * sizeof *d->own_source);
   }
+  DEA_TRY(ctx, d->coupled ? DEA_OK : find_network(ctx, d, &d->network));
   DEA_TRY(ctx, find_film(ctx, d, &film));
   d->circuit = (struct dea_circuit_state){.source_voltage_V = voltage_V,
                                           .voltage_V = voltage_V,
@@ -271,7 +269,7 @@ dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_mod
   DEA_TRY_MEMORY(d != NULL);
   d->memory.ctx = ctx;
   d->model = model;
-  d->has_network = !model->disc || dea_layout_has_sheet_resistance(model->layout);
+  d->coupled = model->solid->problem.field != NULL;
   d->options = *time;
   DEA_TRY_ELSE(ctx, prepare(ctx, d), dea_circuit_step_destroy(ctx, d));
   *out = d;
@@ -383,18 +381,6 @@ static double voltage_error(const struct dea_circuit_step *d, double h)
   return 0.25 * h / (h + before) * fabs(d->circuit_next.voltage_V - from - drawn);
 }
 
-/* The circuit's account of a step takes the voltage's mean for the charge; the film's work is known
- * better. */
-static void refine_work(struct dea_circuit_step *d)
-{
-  const struct dea_circuit_state *from = &d->circuit;
-  struct dea_circuit_state *to = &d->circuit_next;
-  const double voltage_V[2] = {from->voltage_V, to->voltage_V};
-  const double capacitance_F[2] = {from->capacitance_F, to->capacitance_F};
-  to->supply_work_J += dea_solid_source_work(voltage_V, capacitance_F) -
-                       0.5 * (voltage_V[0] + voltage_V[1]) * (to->charge_C - from->charge_C);
-}
-
 /* Work of the supply and of what moves in the step that became nothing of what is counted. */
 static double unaccounted(const struct dea_circuit_step *d, const struct dea_solid_energies *from,
                           const struct dea_solid_energies *to)
@@ -454,22 +440,25 @@ static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step
                                 const struct dea_time_step *step,
                                 const struct dea_circuit_film *film)
 {
-  if (d->has_network) {
+  if (!d->coupled) {
     DEA_TRY_ELSE(ctx, find_network(ctx, d, &d->network_next), dea_solid_time_reject(d->time));
     find_currents(d);
   }
+  const double film_J = dea_solid_time_energies(d->time, true).supply -
+                        dea_solid_time_energies(d->time, false).supply;
   if (d->own) {
-    advance_network(d, step,
-                    dea_solid_time_energies(d->time, true).supply -
-                        dea_solid_time_energies(d->time, false).supply);
+    advance_network(d, step, film_J);
     d->charged_J = d->model->copies * dea_solid_time_charged_J(d->time, true);
     return DEA_OK;
   }
   dea_circuit_advance(&d->options.circuit, &d->circuit, step, film, &d->circuit_next);
-  if (d->step_s > 0 && !step->disconnected) {
-    refine_work(d);
+  struct dea_circuit_state *next = &d->circuit_next;
+  if (d->step_s > 0 && !step->disconnected) { // the film's work is known better than by means
+    next->supply_work_J +=
+        d->model->copies * film_J -
+        0.5 * (d->circuit.voltage_V + next->voltage_V) * (next->charge_C - d->circuit.charge_C);
   }
-  d->charged_J = d->circuit_next.charge_C * d->circuit_next.voltage_V;
+  d->charged_J = next->charge_C * next->voltage_V;
   return DEA_OK;
 }
 
@@ -480,7 +469,7 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
   struct dea_circuit_film film = {.capacitance_F = 0};
   double error_m;
   struct dea_solid_energies from = dea_solid_time_energies(d->time, false);
-  if (any_of(d->own_source, d->own ? channel_count(d) : 0) && step->own_V == NULL) {
+  if (any_of(d->own_source, channel_count(d)) && step->own_V == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a step has to say the voltages of all sources");
   }
   DEA_TRY(ctx, step->disconnected ? prepare_charge(ctx, d) : DEA_OK);
@@ -557,5 +546,5 @@ double dea_circuit_step_charged_J(const struct dea_circuit_step *driven)
 
 const double *dea_circuit_step_currents_A(const struct dea_circuit_step *driven)
 {
-  return driven->current_A;
+  return driven->coupled ? NULL : driven->current_A;
 }

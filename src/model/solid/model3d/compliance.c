@@ -19,31 +19,27 @@ struct work {
   struct dea_model *model;
   struct dea_solid *solid;
   const double *slope; // [dofs] of the coordinate by the unknowns
-  struct dea_adjoint *adjoint;
-  double *rate; // [dofs] dR/dV
+  double *rate;        // [dofs] dR/dV
   double voltage_V, copies;
 };
 
-/* Residuals and energy are of second degree in the voltage, so that central differences over any
- * step are exact: dR/dV, and of the energy at fixed unknowns the first and the second slope. */
-static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_energy[2])
+dea_status dea_solid_model_rate(struct dea_context *ctx, struct dea_solid *s,
+                                struct dea_adjoint *adjoint, double voltage_V, double step_V,
+                                double *rate, double by_energy[2])
 {
-  struct dea_solid *s = w->solid;
-  const double step_V = fmax(fabs(w->voltage_V), 1e3);
   double energy_J[3] = {0};
   dea_status status = DEA_OK;
   for (int side = -1; side <= 1 && status == DEA_OK; side++) {
-    s->state.voltage_V = w->voltage_V + side * step_V;
-    status = dea_adjoint_assemble(ctx, w->adjoint, s->state.voltage_V, &energy_J[side + 1]);
+    s->state.voltage_V = voltage_V + side * step_V;
+    status = dea_adjoint_assemble(ctx, adjoint, s->state.voltage_V, &energy_J[side + 1]);
     for (size_t i = 0; i < s->problem.dofs; i++) {
-      w->rate[i] += side * s->work.g[i] / (2 * step_V);
+      rate[i] += side * s->work.g[i] / (2 * step_V);
     }
   }
-  s->state.voltage_V = w->voltage_V;
-  DEA_TRY(ctx, status);
+  s->state.voltage_V = voltage_V;
   by_energy[0] = (energy_J[2] - energy_J[0]) / (2 * step_V);
   by_energy[1] = (energy_J[2] - 2 * energy_J[1] + energy_J[0]) / (step_V * step_V);
-  return DEA_OK;
+  return status;
 }
 
 enum { MODES = DEA_COMPLIANCE_MODES };
@@ -60,7 +56,7 @@ static dea_status find_air(struct dea_context *ctx, const struct dea_model *mode
   enum { CELLS = 3000 };
   static_assert((int)MODES <= (int)DEA_AIR_SHAPES_MAX, "room");
   struct dea_field_mesh *surface, *moved;
-  DEA_TRY(ctx, dea_solid_surface(ctx, model->solid, (int)model->plies.film, &surface));
+  DEA_TRY(ctx, dea_solid_fields(ctx, model->solid, (int)model->plies.film, &surface));
   const size_t size = 3 * surface->point_count;
   double *shapes = dea_solid_alloc(ctx, MODES * size, sizeof *shapes);
   dea_status status = shapes == NULL ? DEA_E_MEMORY : DEA_OK;
@@ -143,23 +139,34 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea
   return DEA_CHAIN(ctx, status);
 }
 
-/* du/dF = K^-1 q_u / copies, du/dV = -K^-1 R_V. */
-static dea_status find_slopes(struct dea_context *ctx, struct work *w, const double by_energy[2],
+/* du/dF = K^-1 q_u / copies, du/dV = -K^-1 R_V with the tangent as it is: of what moves at once, or
+ * of all, with R_V and the charge. */
+static dea_status find_slopes(struct dea_context *ctx, struct work *w, bool fast,
                               struct dea_compliance *out)
 {
-  const size_t size = w->solid->problem.dofs * sizeof(double);
-  static const bool wanted[ANSWERS] = {true, true};
-  memcpy(dea_adjoint_slope(w->adjoint, COORDINATE), w->slope, size);
-  memcpy(dea_adjoint_slope(w->adjoint, VOLTAGE), w->rate, size);
-  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, wanted));
-  const double *by_force = dea_adjoint_answer(w->adjoint, COORDINATE),
-               *by_rate = dea_adjoint_answer(w->adjoint, VOLTAGE);
-  out->by_force = dea_solid_dot(w->solid, by_force, w->slope) / w->copies;
-  out->by_voltage = -dea_solid_dot(w->solid, by_force, w->rate);
-  out->charge_by_force = -dea_solid_dot(w->solid, by_rate, w->slope);
-  out->charge_C = -w->copies * by_energy[0];
-  out->charge_by_voltage = w->copies * (dea_solid_dot(w->solid, by_rate, w->rate) - by_energy[1]);
-  return DEA_OK;
+  struct dea_solid *s = w->solid;
+  struct dea_adjoint *adjoint;
+  const bool wanted[ANSWERS] = {true, !fast};
+  double by_energy[2] = {0};
+  DEA_TRY(ctx, dea_adjoint_create(ctx, s, ANSWERS, &adjoint));
+  dea_status status = fast
+                          ? DEA_OK
+                          : dea_solid_model_rate(ctx, s, adjoint, w->voltage_V,
+                                                 fmax(fabs(w->voltage_V), 1e3), w->rate, by_energy);
+  memcpy(dea_adjoint_slope(adjoint, COORDINATE), w->slope, s->problem.dofs * sizeof *w->slope);
+  memcpy(dea_adjoint_slope(adjoint, VOLTAGE), w->rate, s->problem.dofs * sizeof *w->rate);
+  status = status == DEA_OK ? dea_adjoint_solve(ctx, adjoint, wanted) : status;
+  const double *by_force = dea_adjoint_answer(adjoint, COORDINATE),
+               *by_rate = dea_adjoint_answer(adjoint, VOLTAGE);
+  *(fast ? &out->fast_by_force : &out->by_force) = dea_solid_dot(s, by_force, w->slope) / w->copies;
+  *(fast ? &out->fast_by_voltage : &out->by_voltage) = -dea_solid_dot(s, by_force, w->rate);
+  if (!fast) {
+    out->charge_by_force = -dea_solid_dot(s, by_rate, w->slope);
+    out->charge_C = -w->copies * by_energy[0];
+    out->charge_by_voltage = w->copies * (dea_solid_dot(s, by_rate, w->rate) - by_energy[1]);
+  }
+  dea_adjoint_destroy(ctx, adjoint);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* Slopes of what moves at once and, where they are asked for, its modes: with the tangent of a step
@@ -169,23 +176,11 @@ static dea_status find_fast(struct dea_context *ctx, struct work *w, bool modes,
 {
   struct dea_solid *s = w->solid;
   struct dea_internal_variables *held;
-  static const bool wanted = true;
   DEA_TRY(ctx, dea_internal_variables_create(ctx, s, w->model->plies.branches, &held));
   dea_internal_variables_begin(held, s, 0);
   s->state.internal_variables = held;
   dea_solid_forget(s);
-  dea_status status = dea_adjoint_create(ctx, s, 1, &w->adjoint);
-  if (status == DEA_OK) {
-    memcpy(dea_adjoint_slope(w->adjoint, 0), w->slope, s->problem.dofs * sizeof *w->slope);
-    status = dea_adjoint_solve(ctx, w->adjoint, &wanted);
-  }
-  if (status == DEA_OK) {
-    const double *answer = dea_adjoint_answer(w->adjoint, 0);
-    out->fast_by_force = dea_solid_dot(s, answer, w->slope) / w->copies;
-    out->fast_by_voltage = -dea_solid_dot(s, answer, w->rate);
-  }
-  dea_adjoint_destroy(ctx, w->adjoint);
-  w->adjoint = NULL;
+  dea_status status = find_slopes(ctx, w, true, out);
   status = status == DEA_OK && modes ? find_modes(ctx, w, out) : status;
   s->state.internal_variables = NULL;
   dea_solid_forget(s);
@@ -196,19 +191,12 @@ static dea_status find_fast(struct dea_context *ctx, struct work *w, bool modes,
 static dea_status find_compliance(struct dea_context *ctx, struct work *w, int with,
                                   struct dea_compliance *out)
 {
-  double by_energy[2] = {0};
   const bool modes = with & DEA_COMPLIANCE_WITH_MODES;
-  dea_status status = dea_adjoint_create(ctx, w->solid, ANSWERS, &w->adjoint);
-  status = status == DEA_OK ? find_rate(ctx, w, by_energy) : status;
-  status = status == DEA_OK ? find_slopes(ctx, w, by_energy, out) : status;
-  dea_adjoint_destroy(ctx, w->adjoint);
-  w->adjoint = NULL;
-  if (status == DEA_OK && (with & DEA_COMPLIANCE_WITH_FAST)) {
-    status = find_fast(ctx, w, modes, out);
-  } else if (status == DEA_OK && modes) {
-    status = find_modes(ctx, w, out);
+  DEA_TRY(ctx, find_slopes(ctx, w, false, out));
+  if (with & DEA_COMPLIANCE_WITH_FAST) {
+    return DEA_CHAIN(ctx, find_fast(ctx, w, modes, out));
   }
-  return status;
+  return DEA_CHAIN(ctx, modes ? find_modes(ctx, w, out) : DEA_OK);
 }
 
 dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,
@@ -219,11 +207,10 @@ dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model 
   double energy_J;
   DEA_TRY(ctx, dea_solid_model_find_coordinate(ctx, model, coordinate));
   DEA_TRY(ctx, with & DEA_COMPLIANCE_WITH_MODES ? dea_solid_check_densities(ctx, model) : DEA_OK);
-  *out = (struct dea_compliance){
-      .force = model->pull.force, .fast_by_force = NAN, .fast_by_voltage = NAN};
-  for (size_t i = 0; i < s->problem.dofs; i++) {
-    out->value += model->pull.slope[i] * s->state.u[i];
-  }
+  *out = (struct dea_compliance){.value = dea_solid_dot(s, model->pull.slope, s->state.u),
+                                 .force = model->pull.force,
+                                 .fast_by_force = NAN,
+                                 .fast_by_voltage = NAN};
   for (size_t k = 0; k < DEA_COMPLIANCE_MODES; k++) {
     out->modes[k] = (struct dea_compliance_mode){NAN, NAN, NAN};
   }

@@ -53,7 +53,7 @@ struct work {
   size_t mode_count;
   double *moving; // [dofs] room
   struct border border;
-  double *null_mode; // [dofs] of a limit point, as it is found
+  double *null_mode; // [2][dofs] of a limit point, as it is found, and dR/dV
 };
 
 // Modes -------------------------------------------------------------------------------------------
@@ -273,20 +273,6 @@ static const double share_of_voltage = 1e-5; // that differences by the voltage 
  */
 enum { RATE, NULL_MODE, OF_LIMIT };
 
-/* dR/dV at the unknowns as they are, times twice by_V, added to out [dofs]. */
-static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_V, double *out)
-{
-  const struct dea_solid *s = w->solid;
-  double energy_J;
-  for (int side = -1; side <= 1; side += 2) {
-    DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, w->voltage_V + side * by_V, &energy_J));
-    for (size_t i = 0; i < s->problem.dofs; i++) {
-      out[i] += side * s->work.g[i];
-    }
-  }
-  return DEA_OK;
-}
-
 /* Slopes of all quantities by the unknowns. */
 static dea_status find_slopes(struct dea_context *ctx, struct work *w)
 {
@@ -358,8 +344,8 @@ static dea_status evaluate(struct dea_context *ctx, struct work *w, double volta
 static dea_status begin_border(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
   const size_t dofs = w->solid->problem.dofs, width = dea_gradient_width(w->ask);
-  const double by_V = share_of_voltage * w->voltage_V;
   struct border *b = &w->border;
+  double by_energy[2];
   double *first = dea_adjoint_slope(w->adjoint, 0), *of_v = dea_adjoint_slope(w->adjoint, width);
   bool known;
   b->rate = dea_arena_alloc(memory, dofs, sizeof(double));
@@ -368,10 +354,8 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
   b->by_voltage = dea_arena_alloc(memory, 2 * width, sizeof(double));
   bool *wanted = dea_arena_alloc(memory, width + 1, sizeof *wanted);
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
-  DEA_TRY(ctx, find_rate(ctx, w, by_V, b->rate));
-  for (size_t i = 0; i < dofs; i++) {
-    b->rate[i] /= 2 * by_V;
-  }
+  DEA_TRY(ctx, dea_solid_model_rate(ctx, w->solid, w->adjoint, w->voltage_V,
+                                    share_of_voltage * w->voltage_V, b->rate, by_energy));
   memcpy(of_v, b->rate, dofs * sizeof *of_v);
   wanted[width] = true;
   DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, wanted));
@@ -502,6 +486,16 @@ static dea_status reserve(struct dea_context *ctx, struct work *w, struct dea_ar
   return dea_solid_allreduce(ctx, dea_arena_status(memory));
 }
 
+/* small_pivots: at a limit point there is one. */
+static dea_status create_adjoint(struct dea_context *ctx, struct work *w, size_t count,
+                                 bool small_pivots)
+{
+  w->solid->work.takes_small_pivots = small_pivots;
+  const dea_status status = dea_adjoint_create(ctx, w->solid, count, &w->adjoint);
+  w->solid->work.takes_small_pivots = false;
+  return status;
+}
+
 /* At the equilibrium. */
 static dea_status find_here(struct dea_context *ctx, struct dea_model *model,
                             const struct dea_gradient_request *ask, double *out)
@@ -516,11 +510,9 @@ static dea_status find_here(struct dea_context *ctx, struct dea_model *model,
   w.force_direction = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
   dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&memory));
   status = status == DEA_OK ? find_modes(ctx, &w, &memory) : status; // first: by another factor
-  if (status == DEA_OK) {
-    s->work.takes_small_pivots = ask->holds_stretch; // at a limit point there is one
-    status = dea_adjoint_create(ctx, s, dea_gradient_width(ask) + 1, &w.adjoint);
-    s->work.takes_small_pivots = false;
-  }
+  status = status == DEA_OK
+               ? create_adjoint(ctx, &w, dea_gradient_width(ask) + 1, ask->holds_stretch)
+               : status;
   status = status == DEA_OK ? reserve(ctx, &w, &memory) : status;
   status = status == DEA_OK ? prepare_modes(ctx, &w, &memory) : status;
   status = status == DEA_OK ? answer(ctx, &w, &memory) : status;
@@ -575,56 +567,40 @@ static dea_status find_null_mode(struct dea_context *ctx, struct work *w)
 /* -(w . dR/dP) / (w . dR/dV), where the solid is at the limit point. */
 static dea_status find_limit(struct dea_context *ctx, struct work *w, double *out)
 {
-  const double V = w->voltage_V, by_V = share_of_voltage * V;
-  double side[2], energy_J;
-  DEA_TRY(ctx, find_rate(ctx, w, by_V, dea_adjoint_slope(w->adjoint, RATE)));
+  const size_t dofs = w->solid->problem.dofs;
+  double *rate = w->null_mode + dofs, by_energy[2];
+  DEA_TRY(ctx, dea_solid_model_rate(ctx, w->solid, w->adjoint, w->voltage_V,
+                                    share_of_voltage * w->voltage_V, rate, by_energy));
+  memcpy(dea_adjoint_slope(w->adjoint, RATE), rate, dofs * sizeof *rate);
   DEA_TRY(ctx, find_null_mode(ctx, w));
-  for (int k = 0; k < 2; k++) {
-    DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, V + (k == 0 ? -by_V : by_V), &energy_J));
-    side[k] = dea_adjoint_product(w->adjoint, NULL_MODE);
-  }
   DEA_TRY(ctx, find_by_changes(ctx, w, out));
   for (size_t c = 0; c < w->ask->change_count; c++) {
-    out[c] *= -2 * by_V / (side[1] - side[0]);
+    out[c] /= -dea_solid_dot(w->solid, dea_adjoint_answer(w->adjoint, NULL_MODE), rate);
   }
   return DEA_OK;
 }
 
 /* At the state that the ending has kept. */
-static dea_status find_at_limit(struct dea_context *ctx, struct dea_model *model,
-                                const struct dea_gradient_request *ask, double *out)
-{
-  struct dea_solid *s = model->solid;
-  double side[2];
-  dea_solid_restore_state(s, &model->at.outcome.at_limit);
-  struct work w = {
-      .model = model, .solid = s, .voltage_V = dea_solid_voltage(s), .ask = ask, .side = side};
-  w.null_mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *w.null_mode);
-  DEA_TRY_MEMORY(w.null_mode != NULL);
-  s->work.takes_small_pivots = true;
-  dea_status status = dea_adjoint_create(ctx, s, OF_LIMIT, &w.adjoint);
-  s->work.takes_small_pivots = false;
-  status = status == DEA_OK ? find_limit(ctx, &w, out) : status;
-  dea_adjoint_destroy(ctx, w.adjoint);
-  dea_free(ctx, w.null_mode);
-  return status;
-}
-
 static dea_status find_there(struct dea_context *ctx, struct dea_model *model,
                              const struct dea_gradient_request *ask, double *out)
 {
   struct dea_solid *s = model->solid;
   struct dea_solid_saved_state here;
-  double energy_J;
+  double side[2], energy_J;
   if (model->at.outcome.at_limit.state == NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "no limit point was located on the way of the last solve");
   }
-  dea_status status = dea_solid_save_state(ctx, s, &here);
-  if (status == DEA_OK) {
-    status = find_at_limit(ctx, model, ask, out);
-    dea_solid_restore_state(s, &here);
-  }
+  DEA_TRY(ctx, dea_solid_save_state(ctx, s, &here));
+  dea_solid_restore_state(s, &model->at.outcome.at_limit);
+  struct work w = {
+      .model = model, .solid = s, .voltage_V = dea_solid_voltage(s), .ask = ask, .side = side};
+  w.null_mode = dea_solid_alloc(ctx, 2 * s->problem.dofs, sizeof *w.null_mode);
+  dea_status status = w.null_mode != NULL ? create_adjoint(ctx, &w, OF_LIMIT, true) : DEA_E_MEMORY;
+  status = status == DEA_OK ? find_limit(ctx, &w, out) : status;
+  dea_adjoint_destroy(ctx, w.adjoint);
+  dea_free(ctx, w.null_mode);
+  dea_solid_restore_state(s, &here);
   status = status == DEA_OK ? dea_solid_assemble(ctx, s, model->at.voltage_V, DEA_FORCE, &energy_J)
                             : status;
   dea_solid_saved_state_free(&here);

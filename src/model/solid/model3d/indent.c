@@ -93,25 +93,6 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_layout_mesh 
   return DEA_CHAIN(ctx, dea_contact_create(ctx, indent->surface, &options, &indent->contact));
 }
 
-dea_status dea_indent_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                             struct dea_solid *solid, const struct dea_probe *probe,
-                             struct dea_indent **out)
-{
-  const struct dea_pressed pressed = {*probe, -1e-3 * probe->radius_m};
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  dea_status status = prepare(ctx, mesh, &pressed, *out);
-  if (status == DEA_OK) {
-    const struct dea_solid_load load = dea_contact_load((*out)->contact);
-    status = dea_solid_add_load(ctx, solid, &load);
-  }
-  if (status != DEA_OK) { // a load that was added is the last thing that can fail
-    dea_indent_destroy(ctx, *out);
-    *out = NULL;
-  }
-  return status;
-}
-
 void dea_indent_destroy(struct dea_context *ctx, struct dea_indent *indent)
 {
   if (indent != NULL) {
@@ -120,8 +101,6 @@ void dea_indent_destroy(struct dea_context *ctx, struct dea_indent *indent)
     dea_free(ctx, indent);
   }
 }
-
-// Gradients ---------------------------------------------------------------------------------------
 
 /* One contact in place of another among the loads. */
 static void replace(struct dea_solid *s, const struct dea_contact *old, struct dea_contact *with)
@@ -133,21 +112,25 @@ static void replace(struct dea_solid *s, const struct dea_contact *old, struct d
   }
 }
 
-dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                                     struct dea_solid *solid, const struct dea_pressed *pressed,
-                                     const struct dea_indent *other, struct dea_indent **out)
+dea_status dea_indent_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                             struct dea_solid *solid, const struct dea_pressed *pressed,
+                             const struct dea_indent *other, struct dea_indent **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
   DEA_TRY_MEMORY(*out != NULL);
   dea_status status = prepare(ctx, mesh, pressed, *out);
-  if (status != DEA_OK) {
+  if (status == DEA_OK && other == NULL) {
+    const struct dea_solid_load load = dea_contact_load((*out)->contact);
+    status = dea_solid_add_load(ctx, solid, &load);
+  } else if (status == DEA_OK) {
+    dea_contact_hold((*out)->contact, other->contact);
+    replace(solid, other->contact, (*out)->contact);
+  }
+  if (status != DEA_OK) { // a load that was added is the last thing that can fail
     dea_indent_destroy(ctx, *out);
     *out = NULL;
-    return status;
   }
-  dea_contact_hold((*out)->contact, other->contact);
-  replace(solid, other->contact, (*out)->contact);
-  return DEA_OK;
+  return status;
 }
 
 void dea_indent_end_variant(struct dea_context *ctx, struct dea_solid *solid,

@@ -15,10 +15,14 @@ struct dea_indent {
   double copies;     // of the domain in the actuator
 };
 
-/* Puts the probe just out of touch and adds it to the solid. The solid must be destroyed first. */
+/* A probe at a depth, which is added to the solid; that must be destroyed first. other: in its
+ * place among the solid's loads until dea_indent_end_variant, which destroys the new one, and with
+ * the same points in touch with the same pressures, without a penalty of its own: on a changed
+ * actuator and its mesh, whose faces are those of the other, for gradients
+ * (docs/theory/gradients.md); NULL: there is none. */
 dea_status dea_indent_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                             struct dea_solid *solid, const struct dea_probe *probe,
-                             struct dea_indent **out);
+                             struct dea_solid *solid, const struct dea_pressed *pressed,
+                             const struct dea_indent *other, struct dea_indent **out);
 void dea_indent_destroy(struct dea_context *ctx, struct dea_indent *indent);
 
 /* Brings it to a depth in steps, at the voltage given. It stays where it came to when a step fails.
@@ -33,12 +37,5 @@ double dea_indent_force(const struct dea_indent *indent, const double *u);
 void dea_indent_force_slope(const struct dea_indent *indent, const double *u, double *by_u,
                             double *by_pressure);
 
-/* The same points in touch with the same pressures on a changed actuator and its mesh, whose faces
- * are those of the other, by a probe at a depth: for gradients, without a penalty of its own
- * (docs/theory/gradients.md). Takes the place of the other among the solid's loads until
- * dea_indent_end_variant, which destroys it. */
-dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                                     struct dea_solid *solid, const struct dea_pressed *pressed,
-                                     const struct dea_indent *other, struct dea_indent **out);
 void dea_indent_end_variant(struct dea_context *ctx, struct dea_solid *solid,
                             const struct dea_indent *other, struct dea_indent *variant);

@@ -69,7 +69,7 @@ dea_status dea_solid_model_surface(struct dea_context *ctx, const struct dea_mod
   for (size_t i = 0; i < dofs; i++) {
     u[i] = scale * v[i];
   }
-  dea_status status = dea_solid_surface(ctx, m->solid, (int)m->plies.film, out);
+  dea_status status = dea_solid_fields(ctx, m->solid, (int)m->plies.film, out);
   memcpy(u, keep, dofs * sizeof *u);
   dea_free(ctx, keep);
   for (size_t i = 0; status == DEA_OK && i < 3 * (*out)->point_count; i++) {
@@ -110,7 +110,7 @@ static dea_status get_modes(struct dea_context *ctx, const struct dea_model *m,
   double *square = memory, *work = memory + count, *vector = work + 2 * dofs;
   DEA_TRY(ctx, dea_solid_modes_lowest(ctx, m->solid, DEA_MODES_BY_MASS, count, square, vector));
   DEA_TRY(ctx, fill_points(ctx, m, at, count, square, vector, work, points));
-  DEA_TRY(ctx, dea_solid_surface(ctx, m->solid, (int)m->plies.film, shapes));
+  DEA_TRY(ctx, dea_solid_fields(ctx, m->solid, (int)m->plies.film, shapes));
   dea_status status = DEA_OK;
   for (size_t k = 0; k < count && status == DEA_OK; k++) {
     status = add_shape(ctx, m, &points[k], vector + k * dofs, *shapes);
@@ -197,22 +197,6 @@ struct answers {
   struct dea_load_point *points;
 };
 
-/* Monitors of the answer at one frequency, per volt. */
-static dea_status get_answer(struct dea_context *ctx, struct dea_model *model, size_t i,
-                             const double *real, const double *imaginary)
-{
-  const size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
-  const double *parts[2] = {real, imaginary};
-  for (int p = 0; p < 2 && width > 0; p++) {
-    DEA_TRY(ctx, dea_observer_differentiate(ctx, model->observer, model->solid, parts[p],
-                                            model->answer));
-    for (size_t k = 0; k < width; k++) {
-      model->answers[2 * (i * width + k) + (size_t)p] = model->answer[k];
-    }
-  }
-  return DEA_OK;
-}
-
 static void find_amplitude(const struct dea_model *m, const char *key, const double *real,
                            const double *imaginary, double ripple_V, double *amplitude_m,
                            double *phase_rad)
@@ -237,7 +221,9 @@ static dea_status add_frequency(struct dea_context *ctx, void *user, size_t i, c
                  &p->fibre_tip_phase_rad);
   find_amplitude(m, "electrode_edge_u_m", real, imaginary, p->ripple_V,
                  &p->electrode_edge_amplitude_m, &p->electrode_edge_phase_rad);
-  return DEA_CHAIN(ctx, get_answer(ctx, m, i, real, imaginary));
+  return DEA_CHAIN(ctx, dea_observer_differentiate(
+                            ctx, m->observer, m->solid, (const double *[2]){real, imaginary},
+                            m->answers + i * m->layout->monitor_count * DEA_OBSERVED_MOTIONS));
 }
 
 static dea_status superpose(struct dea_context *ctx, const struct dea_model *m,
@@ -322,7 +308,7 @@ dea_status dea_solid_model_respond(struct dea_context *ctx, struct dea_model *mo
 {
   const size_t width = model->layout->monitor_count * DEA_OBSERVED_MOTIONS;
   struct answers out = {model, points};
-  double *answers = dea_resize(ctx, model->answers, 2 * count * width + 1, sizeof *answers);
+  double(*answers)[2] = dea_resize(ctx, model->answers, count * width + 1, sizeof *answers);
   model->answers = answers != NULL ? answers : model->answers;
   DEA_TRY_MEMORY(!dea_solid_allreduce_any(answers == NULL));
   if (dea_layout_has_sheet_resistance(model->layout)) {
@@ -339,7 +325,7 @@ dea_status dea_solid_model_respond(struct dea_context *ctx, struct dea_model *mo
   }
   DEA_TRY(ctx, find_answers(ctx, model, excitation, frequency_Hz, count, &out));
   for (size_t i = 0; i < 2 * count * width; i++) {
-    model->answers[i] *= excitation->amplitude_V;
+    model->answers[i / 2][i % 2] *= excitation->amplitude_V;
   }
   return DEA_OK;
 }

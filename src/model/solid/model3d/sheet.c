@@ -9,6 +9,12 @@
 
 enum { TOP, BOTTOM, SIDES };
 
+/* What an electrode is of a face of an element: its nodes in the grid. */
+struct face {
+  size_t electrode;
+  const int *nodes; // [nodes of the shape], lent
+};
+
 /* Of the capacitance of an element what is at one of its plane nodes. */
 struct cell {
   size_t element;
@@ -29,9 +35,9 @@ struct dea_sheet {
   struct dea_solid *solid;
   const double *per_s;
   struct dea_flat_shape shape;
-  size_t columns, channels, potentials, cell_count;
+  size_t columns, channels, potentials, face_count, cell_count;
+  struct face *faces;                // [face_count] by electrodes
   int *at;                           // [electrodes][columns] number of a potential; -1: none
-  int *node;                         // [electrodes][columns] of the grid
   size_t *first;                     // [electrodes] the first one on the same face and channel
   struct cell *cells;                // [cell_count] those of an element one after the other
   int *channel;                      // [potentials] of its electrode
@@ -82,52 +88,51 @@ static int *potential_at(const struct dea_sheet *sheet, size_t i, int column)
   return &sheet->at[sheet->first[i] * sheet->columns + (size_t)column];
 }
 
-/* Whether a quadrilateral of the plane mesh has an electrode. */
-static bool covers(const struct dea_sheet *sheet, size_t i, size_t quad)
+/* Column of node n of a face or an element. */
+static int column_of(const struct dea_sheet *sheet, const int *nodes, int n)
+{
+  return sheet->mesh->grid->column[nodes[n]];
+}
+
+static const int *nodes_of(const struct dea_sheet *sheet, size_t e)
+{
+  return sheet->mesh->grid->nodes + e * DEA_HEX_NODES_MAX;
+}
+
+/* Of all electrodes, on the outermost elements of their plies. */
+static void find_faces(struct dea_sheet *sheet)
 {
   const struct dea_layout_mesh *mesh = sheet->mesh;
-  const struct dea_layout_electrode *e = electrode(sheet, i);
-  const size_t region = (size_t)mesh->plane->region[quad];
-  return mesh->present[region * mesh->layout->ply_count + e->ply] &&
-         dea_layout_mesh_is_within(mesh, region, e->region);
-}
-
-static const int *quad_nodes(const struct dea_sheet *sheet, size_t quad)
-{
-  return sheet->mesh->plane->quads + quad * (size_t)sheet->shape.nodes;
-}
-
-/* Column of the plane node of an element. */
-static int column_of(const struct dea_sheet *sheet, size_t e, int n)
-{
-  const struct dea_grid *grid = sheet->mesh->grid;
-  return grid->column[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]];
-}
-
-/* The node of a resisting electrode that node n of a quadrilateral is; -1: none. */
-static int node_of(const struct dea_sheet *sheet, size_t i, size_t quad, int n)
-{
-  return resists(sheet, i) && covers(sheet, i, quad) ? quad_nodes(sheet, quad)[n] : -1;
+  const struct dea_grid *grid = mesh->grid;
+  for (size_t i = 0; i < mesh->layout->electrode_count; i++) {
+    const struct dea_layout_electrode *own = electrode(sheet, i);
+    for (size_t e = 0; e < grid->element_count; e++) {
+      const int last = (grid->levels[e] - 1) * sheet->shape.nodes;
+      const int *nodes = nodes_of(sheet, e) + (own->top ? last : 0);
+      if ((size_t)grid->ply[e] == own->ply && dea_layout_mesh_within(mesh, e, own->region) &&
+          grid->X[3 * nodes[0] + 2] == mesh->face_m[own->ply][own->top ? 1 : 0]) {
+        sheet->faces[sheet->face_count++] = (struct face){i, nodes};
+      }
+    }
+  }
 }
 
 /* Whether two electrodes on the same face and channel have a node in common; where the second is
- * ideal that is the lead of the first. */
+ * ideal that is the lead of the first. has: room, [columns]. */
 static bool meets(struct dea_sheet *sheet, size_t i, size_t other, bool *has)
 {
-  const size_t quads = sheet->mesh->plane->quad_count;
   bool any = false;
   memset(has, 0, sheet->columns * sizeof *has);
-  for (size_t q = 0; q < quads; q++) {
-    for (int n = 0; covers(sheet, other, q) && n < sheet->shape.nodes; n++) {
-      has[quad_nodes(sheet, q)[n]] = true;
+  for (size_t k = 0; k < sheet->face_count; k++) {
+    for (int n = 0; sheet->faces[k].electrode == other && n < sheet->shape.nodes; n++) {
+      has[column_of(sheet, sheet->faces[k].nodes, n)] = true;
     }
   }
-  for (size_t q = 0; q < quads; q++) {
-    for (int n = 0; n < sheet->shape.nodes; n++) {
-      const int column = node_of(sheet, i, q, n);
-      const bool common = column >= 0 && has[column];
-      any = any || common;
-      if (common && !resists(sheet, other)) {
+  for (size_t k = 0; k < sheet->face_count; k++) {
+    for (int n = 0; sheet->faces[k].electrode == i && n < sheet->shape.nodes; n++) {
+      const int column = column_of(sheet, sheet->faces[k].nodes, n);
+      any = any || has[column];
+      if (has[column] && !resists(sheet, other)) {
         *potential_at(sheet, i, column) = (int)electrode(sheet, i)->channel;
       }
     }
@@ -153,10 +158,10 @@ static void lead_edge(struct dea_sheet *sheet, size_t i)
 {
   const struct dea_layout_mesh *mesh = sheet->mesh;
   const struct dea_region *region = &mesh->layout->regions[electrode(sheet, i)->region].region;
-  for (size_t q = 0; q < mesh->plane->quad_count; q++) {
-    for (int n = 0; n < sheet->shape.nodes; n++) {
-      const int column = node_of(sheet, i, q, n);
-      if (column >= 0 && edge_distance_m(region, mesh->plane->x + 2 * column) <= mesh->near_m) {
+  for (size_t k = 0; k < sheet->face_count; k++) {
+    for (int n = 0; sheet->faces[k].electrode == i && n < sheet->shape.nodes; n++) {
+      const int column = column_of(sheet, sheet->faces[k].nodes, n);
+      if (edge_distance_m(region, mesh->plane->x + 2 * column) <= mesh->near_m) {
         *potential_at(sheet, i, column) = (int)electrode(sheet, i)->channel;
       }
     }
@@ -191,33 +196,20 @@ static void find_leads(struct dea_sheet *sheet, bool *led, bool *has)
   }
 }
 
-/* Numbers the potentials, and finds nodes of the grid at them. */
+/* Numbers the potentials. */
 static void number(struct dea_sheet *sheet, bool *led, bool *has)
 {
-  const struct dea_layout_mesh *mesh = sheet->mesh;
-  const struct dea_grid *grid = mesh->grid;
-  const size_t electrodes = mesh->layout->electrode_count;
+  const size_t electrodes = sheet->mesh->layout->electrode_count;
   for (size_t k = 0; k < electrodes * sheet->columns; k++) {
     sheet->at[k] = -1;
   }
   find_leads(sheet, led, has);
   sheet->potentials = sheet->channels;
-  for (size_t i = 0; i < electrodes; i++) {
-    const struct dea_layout_electrode *own = electrode(sheet, i);
-    for (size_t q = 0; q < mesh->plane->quad_count; q++) {
-      for (int n = 0; n < sheet->shape.nodes; n++) {
-        const int column = node_of(sheet, i, q, n);
-        if (column >= 0 && *potential_at(sheet, i, column) < 0) {
-          *potential_at(sheet, i, column) = (int)sheet->potentials++;
-        }
-      }
-    }
-    for (size_t e = 0; e < grid->element_count; e++) {
-      const int last = (grid->levels[e] - 1) * sheet->shape.nodes;
-      for (int n = 0; (size_t)grid->ply[e] == own->ply && n < sheet->shape.nodes; n++) {
-        sheet->node[i * sheet->columns + (size_t)column_of(sheet, e, n)] =
-            grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)(n + (own->top ? last : 0))];
-      }
+  for (size_t k = 0; k < sheet->face_count; k++) {
+    const struct face *face = &sheet->faces[k];
+    for (int n = 0; resists(sheet, face->electrode) && n < sheet->shape.nodes; n++) {
+      int *at = potential_at(sheet, face->electrode, column_of(sheet, face->nodes, n));
+      *at = *at < 0 ? (int)sheet->potentials++ : *at;
     }
   }
 }
@@ -231,7 +223,8 @@ static void set_shares(struct dea_sheet *sheet, struct cell *cells)
   for (int q = 0; q < s->gauss; q++) {
     double map[4] = {0};
     for (int n = 0; n < s->nodes; n++) {
-      const double *x = sheet->mesh->plane->x + 2 * column_of(sheet, cells->element, n);
+      const double *x =
+          sheet->mesh->plane->x + 2 * column_of(sheet, nodes_of(sheet, cells->element), n);
       for (int a = 0; a < 4; a++) {
         map[a] += x[a / 2] * s->slope[q][a % 2][n];
       }
@@ -265,9 +258,10 @@ static void find_cells(struct dea_sheet *sheet)
     for (int n = 0; n < sheet->shape.nodes; n++) {
       cells[n].element = e;
       for (int k = 0; k < SIDES; k++) {
-        cells[n].end[k] = resists(sheet, (size_t)on[k])
-                              ? *potential_at(sheet, (size_t)on[k], column_of(sheet, e, n))
-                              : p->between[e][k];
+        cells[n].end[k] =
+            resists(sheet, (size_t)on[k])
+                ? *potential_at(sheet, (size_t)on[k], column_of(sheet, nodes_of(sheet, e), n))
+                : p->between[e][k];
       }
     }
     set_shares(sheet, cells);
@@ -319,9 +313,9 @@ static PetscErrorCode add_cells(const struct dea_sheet *sheet, const struct part
   return code;
 }
 
-/* Conductances [nodes][nodes] of a quadrilateral of an electrode of 1 ohm per square as it is
- * deformed: the integral of grad N_a . grad N_b over the surface. */
-static void find_conductances(const struct dea_sheet *sheet, size_t i, size_t quad, double share,
+/* Conductances [nodes][nodes] of a face of an electrode of 1 ohm per square as it is deformed: the
+ * integral of grad N_a . grad N_b over the surface. */
+static void find_conductances(const struct dea_sheet *sheet, const int *nodes, double share,
                               double *out)
 {
   const struct dea_flat_shape *s = &sheet->shape;
@@ -330,9 +324,7 @@ static void find_conductances(const struct dea_sheet *sheet, size_t i, size_t qu
   for (int q = 0; q < s->gauss; q++) {
     double g[2][3] = {{0}}, G[3] = {0}; // tangents and their products 11 22 12
     for (int n = 0; n < 3 * s->nodes; n++) {
-      const int column = quad_nodes(sheet, quad)[n / 3];
-      const size_t at =
-          3 * (size_t)sheet->node[i * sheet->columns + (size_t)column] + (size_t)(n % 3);
+      const size_t at = 3 * (size_t)nodes[n / 3] + (size_t)(n % 3);
       for (int a = 0; a < 2; a++) {
         g[a][n % 3] += (X[at] + mean_of(u, share, at)) * s->slope[q][a][n / 3];
       }
@@ -354,25 +346,21 @@ static void find_conductances(const struct dea_sheet *sheet, size_t i, size_t qu
   }
 }
 
-static PetscErrorCode add_electrode(const struct dea_sheet *sheet, size_t i, double share,
-                                    const double *phi, double *right)
+static PetscErrorCode add_face(const struct dea_sheet *sheet, const struct face *face, double share,
+                               const double *phi, double *right)
 {
   double K[DEA_FLAT_NODES_MAX * DEA_FLAT_NODES_MAX];
   const int nodes = sheet->shape.nodes;
-  const struct dea_layout_electrode *own = electrode(sheet, i);
+  const struct dea_layout_electrode *own = electrode(sheet, face->electrode);
   const size_t layers = dea_ply_layers(&sheet->mesh->layout->plies[own->ply]);
   const double per_ohm = 0.5 * (double)(layers + 1) / own->sheet_resistance_ohm; // by turns
   PetscErrorCode code = 0;
-  for (size_t q = 0; q < sheet->mesh->plane->quad_count && code == 0; q++) {
-    if (!covers(sheet, i, q)) {
-      continue;
-    }
-    find_conductances(sheet, i, q, share, K);
-    for (int n = 0; n < nodes * nodes && code == 0; n++) {
-      const int row = *potential_at(sheet, i, quad_nodes(sheet, q)[n / nodes]);
-      const int column = *potential_at(sheet, i, quad_nodes(sheet, q)[n % nodes]);
-      code = add(sheet, phi, row, column, per_ohm * K[n], right);
-    }
+  find_conductances(sheet, face->nodes, share, K);
+  for (int n = 0; n < nodes * nodes && code == 0; n++) {
+    const int row = column_of(sheet, face->nodes, n / nodes),
+              column = column_of(sheet, face->nodes, n % nodes);
+    code = add(sheet, phi, *potential_at(sheet, face->electrode, row),
+               *potential_at(sheet, face->electrode, column), per_ohm * K[n], right);
   }
   return code;
 }
@@ -395,8 +383,10 @@ static dea_status euler_step(struct dea_context *ctx, struct dea_sheet *sheet,
     }
   }
   code = code == 0 ? add_cells(sheet, part, phi, right) : code;
-  for (size_t i = 0; i < sheet->mesh->layout->electrode_count && code == 0; i++) {
-    code = resists(sheet, i) ? add_electrode(sheet, i, part->share, phi, right) : 0;
+  for (size_t k = 0; k < sheet->face_count && code == 0; k++) {
+    code = resists(sheet, sheet->faces[k].electrode)
+               ? add_face(sheet, &sheet->faces[k], part->share, phi, right)
+               : 0;
   }
   DEA_PETSC(ctx, VecRestoreArray(sheet->right, &right));
   DEA_PETSC(ctx, code);
@@ -632,7 +622,7 @@ static dea_status allocate_places(struct dea_sheet *sheet)
   sheet->columns = mesh->plane->node_count;
   sheet->channels = s->problem.channel_count + 1;
   sheet->at = dea_arena_alloc(memory, electrodes * sheet->columns, sizeof *sheet->at);
-  sheet->node = dea_arena_alloc(memory, electrodes * sheet->columns, sizeof *sheet->node);
+  sheet->faces = dea_arena_alloc(memory, electrodes * elements, sizeof *sheet->faces);
   sheet->first = dea_arena_alloc(memory, electrodes, sizeof *sheet->first);
   sheet->cells =
       dea_arena_alloc(memory, elements * (size_t)sheet->shape.nodes, sizeof *sheet->cells);
@@ -714,6 +704,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
   for (size_t i = 0; i < electrodes; i++) {
     sheet->first[i] = first_of(sheet, i);
   }
+  find_faces(sheet);
   bool *marks = dea_solid_alloc(ctx, electrodes + sheet->columns, sizeof *marks);
   DEA_TRY_MEMORY(marks != NULL);
   number(sheet, marks, marks + electrodes);

@@ -10,26 +10,28 @@
 static dea_status check_control(struct dea_context *ctx, const struct dea_model *model,
                                 const struct dea_control *control, double value)
 {
+  static const char *const names[] = {[DEA_CONTROL_PLACE] = "control",
+                                      [DEA_CONTROL_FORCE] = "control",
+                                      [DEA_CONTROL_PRESSURE] = "control",
+                                      [DEA_CONTROL_CONJUGATE] = "force",
+                                      [DEA_CONTROL_CHARGE] = "charge"};
   const struct dea_layout *l = model->layout;
-  bool pressure = control->kind == DEA_CONTROL_PRESSURE;
-  if (control->kind == DEA_CONTROL_CONJUGATE || control->kind == DEA_CONTROL_CHARGE) {
-    return isfinite(value) ? DEA_OK
-                           : dea_fail(ctx, DEA_E_ARGUMENT, "a %s has to be a number",
-                                      control->kind == DEA_CONTROL_CHARGE ? "charge" : "force");
-  }
-  if (pressure
-          ? l->pressure_count == 0
-          : control->body >= l->body_count || control->component < 0 || control->component > 5) {
+  const bool body = control->kind == DEA_CONTROL_PLACE || control->kind == DEA_CONTROL_FORCE,
+             pressure = control->kind == DEA_CONTROL_PRESSURE;
+  if ((pressure && l->pressure_count == 0) ||
+      (body &&
+       (control->body >= l->body_count || control->component < 0 || control->component > 5))) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the device has no such %s to be moved",
                     pressure ? "pressure" : "body");
   }
-  int keeps = dea_layout_sector_keeps(&model->mesh.sector);
-  if (!pressure && ((keeps >> control->component) & 1) == 0) {
+  if (body && ((dea_layout_sector_keeps(&model->mesh.sector) >> control->component) & 1) == 0) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "a sector of the device cannot show this motion, which breaks its symmetry "
                     "(compute.solid.domain: whole)");
   }
-  return isfinite(value) ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "a control has to be a number");
+  return isfinite(value)
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_ARGUMENT, "a %s has to be a number", names[control->kind]);
 }
 
 static double where_control_is(const struct dea_model *model, const struct dea_control *control)
@@ -140,21 +142,31 @@ dea_status dea_solid_model_set_control(struct dea_context *ctx, struct dea_model
   return DEA_CHAIN(ctx, set_control(ctx, model, control, value));
 }
 
+/* How a limit point of a control is named and given, by its kind and whether it turns. */
+static const struct {
+  const char *name, *unit;
+  double scale;
+} limits[][2] = {
+    [DEA_CONTROL_PLACE] = {{"limit point", "mm", 1e3}, {"limit point", "rad", 1}},
+    [DEA_CONTROL_FORCE] = {{"force limit", "mN", 1e3}, {"moment limit", "mN m", 1e3}},
+    [DEA_CONTROL_PRESSURE] = {{"pressure limit", "kPa", 1e-3}, {"pressure limit", "kPa", 1e-3}},
+    [DEA_CONTROL_CONJUGATE] = {{"force limit", "mN", 1e3}, {"moment limit", "mN m", 1e3}},
+    [DEA_CONTROL_CHARGE] = {{"charge limit", "uC", 1e6}, {"charge limit", "uC", 1e6}},
+};
+
 /* That it has gone past a limit point of the control, where it has moved to what that was set to.
  */
 static dea_status report_passed(struct dea_context *ctx, struct dea_model *model,
                                 const struct dea_control *control, double limit)
 {
-  bool force = control->kind == DEA_CONTROL_FORCE || control->kind == DEA_CONTROL_CONJUGATE,
-       turns = control->component >= 3;
+  const bool force = control->kind == DEA_CONTROL_FORCE || control->kind == DEA_CONTROL_CONJUGATE,
+             turns = control->component >= 3;
   model->at.outcome.passed.point.force_N = force && !turns ? limit : NAN;
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "model 3d: at %.4g kV it snaps past a limit point at %.6g %s to another "
                          "state",
                          1e-3 * model->at.voltage_V, force ? 1e3 * limit : limit,
-                         !force  ? "of the control"
-                         : turns ? "mN m"
-                                 : "mN");
+                         force ? limits[control->kind][turns].unit : "of the control");
 }
 
 /* A limit point of the control at a value. */
@@ -162,27 +174,15 @@ static dea_status fail_at_limit(struct dea_context *ctx, const struct dea_model 
                                 const struct dea_control *control, double value)
 {
   const bool turns = control->component >= 3;
-  double scale = 1e3, largest = 0;
-  const char *name = turns ? "moment limit" : "force limit", *unit = turns ? "mN m" : "mN";
-  if (control->kind == DEA_CONTROL_PRESSURE) {
-    for (size_t i = 0; i < model->layout->pressure_count; i++) {
-      largest = fmax(largest, fabs(model->layout->pressures[i].pressure_Pa));
-    }
-    scale = 1e-3 * largest;
-    name = "pressure limit";
-    unit = "kPa";
-  } else if (control->kind == DEA_CONTROL_CHARGE) {
-    scale = 1e6;
-    name = "charge limit";
-    unit = "uC";
-  } else if (control->kind == DEA_CONTROL_PLACE) {
-    scale = turns ? 1 : 1e3;
-    name = "limit point";
-    unit = turns ? "rad" : "mm";
+  double scale = limits[control->kind][turns].scale, largest_Pa = 0;
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    largest_Pa = fmax(largest_Pa, fabs(model->layout->pressures[i].pressure_Pa));
   }
+  scale *= control->kind == DEA_CONTROL_PRESSURE ? largest_Pa : 1;
   return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
-                  "%s at %.5g %s and %.4g kV: beyond it there is no stable equilibrium", name,
-                  scale * value, unit, 1e-3 * model->at.voltage_V);
+                  "%s at %.5g %s and %.4g kV: beyond it there is no stable equilibrium",
+                  limits[control->kind][turns].name, scale * value,
+                  limits[control->kind][turns].unit, 1e-3 * model->at.voltage_V);
 }
 
 dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model,

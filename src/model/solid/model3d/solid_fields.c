@@ -58,18 +58,17 @@ static void release(struct dea_context *ctx, struct recovery *recovery)
   dea_free(ctx, recovery->potential_V);
 }
 
-/* ply: of the middle surface, negative for all elements. */
-static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, int ply,
-                          struct dea_field_mesh **out)
+dea_status dea_solid_fields(struct dea_context *ctx, const struct dea_solid *s, int ply,
+                            struct dea_field_mesh **out)
 {
   struct recovery work;
   *out = NULL;
   dea_status status = prepare(ctx, s, &work);
-  status = status == DEA_OK ? ply < 0 ? dea_recover_volume(ctx, &work.in, out)
-                                      : dea_recover_surface(ctx, &work.in, ply, out)
-                            : status;
+  status = status != DEA_OK       ? status
+           : ply == DEA_ALL_PLIES ? dea_recover_volume(ctx, &work.in, out)
+                                  : dea_recover_surface(ctx, &work.in, ply, out);
   release(ctx, &work);
-  return status;
+  return DEA_CHAIN(ctx, status);
 }
 
 /* The normal of the mirror plane that a node moves in: the one component that is held, if it lies
@@ -91,12 +90,10 @@ static void find_mirror(const struct dea_solid_problem *p, size_t node, double n
 }
 
 dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
-                            const struct dea_solid_quantity *of, size_t count, double *error_m,
+                            const struct dea_recover_quantity *of, size_t count, double *error_m,
                             double *part)
 {
   const struct dea_solid_problem *p = &s->problem;
-  double *z = NULL, (*mirror)[3] = NULL;
-  struct dea_recover_quantity each[DEA_ERRORS_MAX];
   for (size_t k = 0; k < count; k++) {
     error_m[k] = NAN;
   }
@@ -104,36 +101,20 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
     return DEA_OK;
   }
   struct recovery work = {0};
-  z = dea_alloc(ctx, count * p->dofs, sizeof *z);
-  mirror = dea_alloc(ctx, p->grid->node_count, sizeof *mirror);
-  dea_status status = z != NULL && mirror != NULL ? prepare(ctx, s, &work) : DEA_E_MEMORY;
+  double(*mirror)[3] = dea_alloc(ctx, p->grid->node_count, sizeof *mirror);
+  dea_status status = mirror != NULL ? prepare(ctx, s, &work) : DEA_E_MEMORY;
   for (size_t n = 0; status == DEA_OK && n < p->grid->node_count; n++) {
     find_mirror(p, n, mirror[n]);
   }
   for (size_t k = 0; k < count && status == DEA_OK; k++) {
-    each[k] = (struct dea_recover_quantity){z + k * p->dofs, of[k].probes, of[k].probe_count};
-    memcpy(z + k * p->dofs, of[k].weight, p->dofs * sizeof *z);
-    dea_solid_release_held(s, z + k * p->dofs);
-    status = dea_solid_solve_linear(ctx, s, z + k * p->dofs, z + k * p->dofs);
+    dea_solid_release_held(s, of[k].z);
+    status = dea_solid_solve_linear(ctx, s, of[k].z, of[k].z);
   }
   if (status == DEA_OK) {
     status =
-        dea_recover_errors(ctx, &work.in, (const double(*)[3])mirror, each, count, error_m, part);
+        dea_recover_errors(ctx, &work.in, (const double(*)[3])mirror, of, count, error_m, part);
   }
   release(ctx, &work);
   dea_free(ctx, mirror);
-  dea_free(ctx, z);
   return status;
-}
-
-dea_status dea_solid_volume(struct dea_context *ctx, const struct dea_solid *solid,
-                            struct dea_field_mesh **out)
-{
-  return DEA_CHAIN(ctx, recover(ctx, solid, -1, out));
-}
-
-dea_status dea_solid_surface(struct dea_context *ctx, const struct dea_solid *solid, int ply,
-                             struct dea_field_mesh **out)
-{
-  return DEA_CHAIN(ctx, recover(ctx, solid, ply, out));
 }

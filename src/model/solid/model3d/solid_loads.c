@@ -113,12 +113,6 @@ dea_status dea_solid_bodies_add(struct dea_context *ctx, struct dea_model *model
 
 // Supports and loads -----------------------------------------------------------------------------
 
-/* What is near enough to a face to lie on it. */
-static double near_face(const struct dea_model *model)
-{
-  return 1e-6 * model->layout->plies[model->plies.film].thickness_m;
-}
-
 /* Holds the nodes of a support that no body moves, where they are or at its shift. */
 static dea_status hold(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_layout_support *support, bool moved)
@@ -128,7 +122,8 @@ static dea_status hold(struct dea_context *ctx, struct dea_model *model,
   const struct dea_grid *grid = model->mesh.grid;
   size_t held = 0;
   const size_t plies = support->plies;
-  double up_to_m = plies > 0 ? model->mesh.face_m[plies - 1][1] + near_face(model) : INFINITY;
+  const double near_m = 1e-6 * model->layout->plies[model->plies.film].thickness_m;
+  const double up_to_m = plies > 0 ? model->mesh.face_m[plies - 1][1] + near_m : INFINITY;
   dea_layout_mesh_mark(&model->mesh, support->region, support->edge, support->within, on);
   for (size_t n = 0; n < model->mesh_node_count; n++) {
     bool lowest = n == 0 || grid->column[n] != grid->column[n - 1];
@@ -191,12 +186,11 @@ static bool is_loaded(const void *self, int region, int ply, const double middle
 {
   const struct face_of *of = self;
   const struct dea_layout_mesh *mesh = &of->model->mesh;
-  size_t group = mesh->group[of->region];
   // between the elements through a ply there are faces too
   bool outermost =
       fabs(middle[2] - of->height_m) < 1e-6 * of->model->layout->plies[of->ply].thickness_m;
-  return (size_t)ply == of->ply && outermost && group != DEA_LAYOUT_NONE &&
-         mesh->plane->within[(size_t)region * mesh->plane->group_count + group] != 0;
+  return (size_t)ply == of->ply && outermost &&
+         dea_layout_mesh_is_within(mesh, (size_t)region, of->region);
 }
 
 /* A face of a ply in a region. */

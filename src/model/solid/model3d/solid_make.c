@@ -118,10 +118,20 @@ static dea_status report_sag(struct dea_context *ctx, const struct dea_model *mo
   return DEA_OK;
 }
 
+static struct dea_film_band find_band(const struct dea_model *model)
+{
+  const size_t film = model->plies.film;
+  const double *face_m = model->mesh.face_m[film];
+  return (struct dea_film_band){0.5 * (face_m[0] + face_m[1]),
+                                model->layout->plies[film].thickness_m};
+}
+
 dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_layout *l = model->layout;
   const bool coupled = model->settings.field == DEA_FIELD_COUPLED;
+  DEA_TRY(ctx, dea_plies_create(ctx, &model->mesh, &model->memory, &model->plies));
+  model->band = find_band(model);
   double *point_mass, *share = dea_arena_alloc(&model->memory, l->channel_count, sizeof *share);
   model->bodies = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->bodies);
   model->push = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->push);
@@ -162,7 +172,9 @@ dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *m
       .self = &model->mesh,
   };
   DEA_TRY(ctx, dea_solid_create(ctx, model->mesh.grid, &options, &model->solid));
-  return DEA_CHAIN(ctx, dea_solid_loads_add(ctx, model));
+  DEA_TRY(ctx, dea_solid_loads_add(ctx, model));
+  return DEA_CHAIN(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, model->contacts,
+                                            &model->observer));
 }
 
 static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
@@ -179,6 +191,18 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
+dea_status dea_solid_model_mesh(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_layout_mesh *like)
+{
+  DEA_TRY(ctx,
+          like == NULL
+              ? dea_device_mesh_create(ctx, model->device, &model->settings, &model->mesh)
+              : dea_device_mesh_follow(ctx, model->device, &model->settings, like, &model->mesh));
+  model->layout = model->mesh.layout;
+  model->disc = model->mesh.plate.order > 0;
+  return DEA_OK;
+}
+
 /* A mesh of its own, or that of another model. */
 static dea_status build_mesh(struct dea_context *ctx, struct dea_model *model)
 {
@@ -192,29 +216,7 @@ static dea_status build_mesh(struct dea_context *ctx, struct dea_model *model)
                     "compute.solid.field: coupled needs a film with a thickness; take "
                     "compute.solid.film: solid");
   }
-  if (from == NULL) {
-    DEA_TRY(ctx, dea_device_mesh_create(ctx, model->device, &model->settings, &model->mesh));
-  } else {
-    DEA_TRY(ctx, dea_device_mesh_follow(ctx, model->device, &model->settings, &from->mesh,
-                                        &model->mesh));
-  }
-  return DEA_OK;
-}
-
-/* What belongs to the mesh: its layout, and where on it things are. */
-void dea_solid_model_check_mesh(struct dea_model *model)
-{
-  const struct dea_layout_mesh *mesh = &model->mesh;
-  model->layout = mesh->layout;
-  model->disc = mesh->plate.order > 0;
-}
-
-void dea_solid_model_find_band(struct dea_model *model)
-{
-  const size_t film = model->plies.film;
-  const double *face_m = model->mesh.face_m[film];
-  model->band =
-      (struct dea_film_band){0.5 * (face_m[0] + face_m[1]), model->layout->plies[film].thickness_m};
+  return DEA_CHAIN(ctx, dea_solid_model_mesh(ctx, model, from != NULL ? &from->mesh : NULL));
 }
 
 dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_device *device,
@@ -229,18 +231,9 @@ dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_dev
   DEA_TRY(ctx, dea_solid_start(ctx));
   DEA_TRY(ctx,
           dea_solid_allreduce(ctx, build_mesh(ctx, model))); // gmsh may be ended on one rank alone
-  dea_solid_model_check_mesh(model);
-  model->answer =
-      dea_arena_alloc(&model->memory, model->layout->monitor_count * DEA_OBSERVED_MOTIONS + 1,
-                      sizeof *model->answer);
-  DEA_TRY(ctx, dea_arena_status(&model->memory));
   model->copies = (double)dea_layout_sector_copies(&model->mesh.sector);
   DEA_TRY(ctx, report_mesh(ctx, model));
-  DEA_TRY(ctx, dea_plies_create(ctx, &model->mesh, &model->memory, &model->plies));
-  dea_solid_model_find_band(model);
   DEA_TRY(ctx, dea_solid_model_assemble(ctx, model));
-  DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, model->contacts,
-                                   &model->observer));
   DEA_TRY(ctx, dea_solid_loads_release(ctx, model));
   DEA_TRY(ctx, keep_rest(ctx, model));
   return DEA_CHAIN(ctx, report_sag(ctx, model));

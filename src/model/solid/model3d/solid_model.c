@@ -37,7 +37,7 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
   DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, out));
-  if (model->at.driven != NULL) {
+  if (model->at.driven != NULL && dea_circuit_step_currents_A(model->at.driven) != NULL) {
     dea_observer_set_currents(model->observer, dea_circuit_step_currents_A(model->at.driven));
   }
   return DEA_OK;
@@ -48,7 +48,9 @@ static dea_status indent(struct dea_context *ctx, struct dea_model *model,
 {
   dea_solid_model_end_history(ctx, model);
   if (model->indent == NULL) {
-    DEA_TRY(ctx, dea_indent_create(ctx, &model->mesh, model->solid, probe, &model->indent));
+    const struct dea_pressed out_of_touch = {*probe, -1e-3 * probe->radius_m};
+    DEA_TRY(ctx, dea_indent_create(ctx, &model->mesh, model->solid, &out_of_touch, NULL,
+                                   &model->indent));
   }
   dea_status status = dea_indent_move(ctx, model->indent, model->solid, model->at.voltage_V,
                                       depth_m, &model->at.report);
@@ -88,14 +90,8 @@ static dea_status path_point(struct dea_context *ctx, const struct path *path,
 static double beyond(const struct path *path)
 {
   const struct dea_solid *solid = path->model->solid;
-  double sum = -path->value;
-  if (path->weight == NULL) {
-    return -1;
-  }
-  for (size_t i = 0; i < solid->problem.dofs; i++) {
-    sum += path->weight[i] * solid->state.u[i];
-  }
-  return sum;
+  return path->weight != NULL ? dea_solid_dot(solid, path->weight, solid->state.u) - path->value
+                              : -1;
 }
 
 /* The limit point or bifurcation that the last step has passed, if it is not beyond the end; where
@@ -452,9 +448,8 @@ static dea_status load(struct dea_context *ctx, struct dea_model *model,
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
-  DEA_TRY(ctx, part == DEA_FIELDS_VOLUME
-                   ? dea_solid_volume(ctx, model->solid, out)
-                   : dea_solid_surface(ctx, model->solid, (int)model->plies.film, out));
+  const int ply = part == DEA_FIELDS_VOLUME ? DEA_ALL_PLIES : (int)model->plies.film;
+  DEA_TRY(ctx, dea_solid_fields(ctx, model->solid, ply, out));
   return DEA_CHAIN(ctx, dea_solid_model_whole(ctx, model, out));
 }
 
@@ -469,7 +464,7 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
   }
   dea_free(ctx, model->profile);
   model->profile = NULL;
-  DEA_TRY(ctx, dea_solid_surface(ctx, model->solid, (int)model->plies.film, &surface));
+  DEA_TRY(ctx, dea_solid_fields(ctx, model->solid, (int)model->plies.film, &surface));
   dea_status status = dea_line_profile(ctx, surface, 0, dea_fibre_disc_angle(p) / p->sectors,
                                        model->device->pre_stretch, &model->profile, out);
   dea_field_mesh_destroy(ctx, surface);
@@ -491,7 +486,7 @@ static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t
 
 static const double *answers(const struct dea_model *model)
 {
-  return model->answers;
+  return model->answers != NULL ? *model->answers : NULL;
 }
 
 extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_module;

@@ -3,6 +3,7 @@
 
 #include "model/solid/actuator/layout_mesh.h"
 #include "model/solid/assembly/problem.h"
+#include "model/solid/equilibrium/adjoint.h"
 #include "model/solid/equilibrium/solve_incremental.h"
 #include "model/solid/load/loads.h"
 #include "model/solid/model3d/buckling_branch.h"
@@ -98,8 +99,7 @@ struct dea_model {
   struct dea_model_moved *controls;  // [body_count] components that moves have set
   struct dea_model_pull pull;        // the force conjugate to a coordinate
   struct dea_model_variant *variant; // a changed device is under the solid; NULL: its own
-  double *answers;                   // of the last response, as in model/model.h
-  double *answer;                    // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
+  double (*answers)[2];              // of the last response, as in model/model.h
   struct dea_model_marks marks;      // of saved states, made by the first
 };
 
@@ -194,9 +194,11 @@ dea_status dea_solid_model_solve(struct dea_context *ctx, struct dea_model *mode
 void dea_solid_model_end_history(struct dea_context *ctx, struct dea_model *model);
 
 // solid_make.c: from a device to its solid at rest
+/* The mesh of its device, like: with the elements of that one; NULL: its own. */
+dea_status dea_solid_model_mesh(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_layout_mesh *like);
+/* Part materials, loads, the solid and its observer on that mesh. */
 dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *model);
-void dea_solid_model_check_mesh(struct dea_model *model);
-void dea_solid_model_find_band(struct dea_model *model);
 void dea_solid_model_free_parts(struct dea_context *ctx, struct dea_model *model);
 dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_device *device,
                                    const struct dea_model_settings *settings,
@@ -251,6 +253,14 @@ dea_status dea_solid_model_create(struct dea_context *ctx, const struct dea_devi
                                   const struct dea_model_settings *settings,
                                   struct dea_model **out);
 dea_status dea_solid_model_errors(struct dea_context *ctx, struct dea_model *model, double *error);
+
+// compliance.c
+/* dR/dV at the unknowns as they are, added to rate [dofs], and of the energy there the first and
+ * the second slope, by central differences: residuals and energy are of second degree in the
+ * voltage, so that any step is exact but for films that wrinkle freely. */
+dea_status dea_solid_model_rate(struct dea_context *ctx, struct dea_solid *solid,
+                                struct dea_adjoint *adjoint, double voltage_V, double step_V,
+                                double *rate, double by_energy[2]);
 
 // compliance.c, solid_controls.c: as in struct dea_model_type
 dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,

@@ -109,37 +109,26 @@ static bool could_be_in(const struct dea_grid *grid, const int *nodes, const dou
   return inside;
 }
 
-/* Lower and upper nodes of an element in the plane. */
-static void faces(const struct dea_grid *grid, size_t e, const int **lower, const int **upper)
-{
-  int per = (grid->order + 1) * (grid->order + 1);
-  *lower = grid->nodes + e * DEA_HEX_NODES_MAX;
-  *upper = *lower + (grid->levels[e] - 1) * per;
-}
-
 /* The elements of a ply: those of its lowest layer, [first, end), and how many further in the grid
- * the highest ones above them are. */
+ * the highest ones above them are. Each layer has those of the plane mesh in their order. */
 struct layers {
   size_t first, end, to_highest;
 };
 
-static struct layers layers_of(const struct dea_grid *grid, size_t ply)
+static struct layers layers_of(const struct dea_layout_mesh *mesh, size_t ply)
 {
+  const struct dea_grid *grid = mesh->grid;
   struct layers out = {0};
   size_t count = 0, layer = 0;
+  for (size_t q = 0; q < mesh->plane->quad_count; q++) {
+    layer += mesh->present[(size_t)mesh->plane->region[q] * mesh->layout->ply_count + ply];
+  }
   for (size_t e = 0; e < grid->element_count; e++) {
     if ((size_t)grid->ply[e] == ply) {
       out.first = count == 0 ? e : out.first;
-      const int *first = grid->nodes + out.first * DEA_HEX_NODES_MAX,
-                *own = grid->nodes + e * DEA_HEX_NODES_MAX;
-      const int last = (grid->order + 1) * (grid->order + 1) - 1;
-      const bool above = count > 0 && grid->column[own[0]] == grid->column[first[0]] &&
-                         grid->column[own[last]] == grid->column[first[last]];
-      layer = above && layer == 0 ? count : layer;
       count++;
     }
   }
-  layer = layer == 0 ? count : layer;
   out.end = out.first + layer;
   out.to_highest = count - layer;
   return out;
@@ -149,9 +138,10 @@ static struct layers layers_of(const struct dea_grid *grid, size_t ply)
 static void ply_faces(const struct dea_grid *grid, const struct layers *layers, size_t e,
                       const int *face[2])
 {
-  const int *own;
-  faces(grid, e, &face[0], &own);
-  faces(grid, e + layers->to_highest, &own, &face[1]);
+  const size_t top = e + layers->to_highest;
+  face[0] = grid->nodes + e * DEA_HEX_NODES_MAX;
+  face[1] = grid->nodes + top * DEA_HEX_NODES_MAX +
+            (grid->levels[top] - 1) * (grid->order + 1) * (grid->order + 1);
 }
 
 /* From a copy into the sector: a mirror is its own inverse, a rotation goes back. */
@@ -162,44 +152,33 @@ static struct dea_motion back_to_sector(const struct dea_layout_mesh *mesh, size
   return out;
 }
 
-/* How near a layer of nodes comes to what is wanted below (side 0) or above: of the middle plane
- * the nearest ones to both sides, or itself. */
-static double nearness(enum dea_monitor_level level, int side, double z_m, double middle_m,
-                       double near_m)
-{
-  const bool here = side == 0 ? z_m <= middle_m + near_m : z_m >= middle_m - near_m;
-  switch (level) {
-  case DEA_LEVEL_TOP:
-    return z_m;
-  case DEA_LEVEL_MIDDLE:
-    return here ? -fabs(z_m - middle_m) : -INFINITY;
-  default:
-    return side == 0 ? -z_m : z_m;
-  }
-}
-
-/* In the sector itself. */
+/* In the sector itself: the layers of nodes that are nearest to what is wanted, from below and from
+ * above. */
 static bool find_in_sector(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
                            const double x_m[2], struct probe *out)
 {
   const struct dea_grid *grid = mesh->grid;
   const double *face_m = mesh->face_m[m->ply], middle_m = 0.5 * (face_m[0] + face_m[1]);
   const double near_m = 1e-6 * mesh->layout->plies[m->ply].thickness_m;
-  double best[2] = {-INFINITY, -INFINITY};
+  const double wanted_m[2] = {m->level == DEA_LEVEL_TOP      ? face_m[1]
+                              : m->level == DEA_LEVEL_MIDDLE ? middle_m
+                                                             : face_m[0],
+                              m->level == DEA_LEVEL_MIDDLE ? middle_m : face_m[1]};
+  double best[2] = {INFINITY, INFINITY};
   out->count = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    const int *face[2], per = (grid->order + 1) * (grid->order + 1);
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX,
+              per = (grid->order + 1) * (grid->order + 1);
     double at[2], slope[PLANE_MAX][2];
-    faces(grid, e, &face[0], &face[1]);
-    if ((size_t)grid->ply[e] != m->ply || !could_be_in(grid, face[0], x_m) ||
-        !locate(grid, face[0], x_m, at)) {
+    if ((size_t)grid->ply[e] != m->ply || !could_be_in(grid, nodes, x_m) ||
+        !locate(grid, nodes, x_m, at)) {
       continue;
     }
     for (int k = 0; k < 2 * grid->levels[e]; k++) { // those on the side of one found are no nearer
-      const int *layer = face[0] + k / 2 * per;
-      const double near = nearness(m->level, k % 2, grid->X[3 * layer[0] + 2], middle_m, near_m);
-      if (near > best[k % 2]) { // elements above each other have the same places
-        best[k % 2] = near;
+      const int *layer = nodes + k / 2 * per;
+      const double away_m = (k % 2 == 0 ? -1 : 1) * (grid->X[3 * layer[0] + 2] - wanted_m[k % 2]);
+      if (away_m >= -near_m && fabs(away_m) < best[k % 2]) { // above each other: the same places
+        best[k % 2] = fabs(away_m);
         out->count = per;
         out->element = e;
         memcpy(out->at, at, sizeof out->at);
@@ -236,9 +215,16 @@ static bool find_probe(const struct dea_layout_mesh *mesh, const struct dea_layo
   return false;
 }
 
-static dea_status find_probes(struct dea_context *ctx, struct dea_observer *o)
+/* Where monitors are read, and the columns that those of a disc are. */
+static dea_status find_places(struct dea_context *ctx, struct dea_observer *o)
 {
   const struct dea_layout *l = o->mesh->layout;
+  DEA_TRY(ctx, dea_arena_status(&o->memory));
+  for (size_t i = 0; i < l->disc_monitor_count; i++) {
+    struct of_disc *of = &o->of_disc[i];
+    of->column = dea_observed_of_disc(&l->monitors[l->monitor_count + i], &of->motion);
+    of->error_column = dea_point_error_column(ctx, of->column);
+  }
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   for (size_t i = 0; i < o->count; i++) {
     const struct dea_layout_monitor *m = &l->monitors[i];
@@ -259,16 +245,6 @@ static dea_status find_probes(struct dea_context *ctx, struct dea_observer *o)
              : dea_fail(ctx, DEA_E_DESIGN, "a monitor is off its ply");
 }
 
-static void find_columns(const struct dea_context *ctx, struct dea_observer *o)
-{
-  const struct dea_layout *l = o->mesh->layout;
-  for (size_t i = 0; i < l->disc_monitor_count; i++) {
-    struct of_disc *of = &o->of_disc[i];
-    of->column = dea_observed_of_disc(&l->monitors[l->monitor_count + i], &of->motion);
-    of->error_column = dea_point_error_column(ctx, of->column);
-  }
-}
-
 dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                                struct dea_pressure *const *pressures,
                                struct dea_contact *const *contacts, struct dea_observer **out)
@@ -287,15 +263,7 @@ dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_
   o->channel = dea_arena_alloc(&o->memory, l->channel_count, sizeof *o->channel);
   o->channel_count = l->channel_count > 1 ? l->channel_count : 2; // a solid has one beside ground
   o->work = dea_arena_alloc(&o->memory, (o->channel_count + 2) * o->channel_count, sizeof(double));
-  dea_status status = dea_arena_status(&o->memory);
-  if (status == DEA_OK) {
-    find_columns(ctx, o);
-    status = find_probes(ctx, o);
-  }
-  if (status != DEA_OK) {
-    dea_observer_destroy(ctx, o);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, find_places(ctx, o), dea_observer_destroy(ctx, o));
   *out = o;
   return DEA_OK;
 }
@@ -364,80 +332,171 @@ static double line_between(const struct dea_layout_mesh *mesh, const struct dea_
   return sqrt(flat);
 }
 
-/* Adds displacement v, lengths of the two tangents and area by their products C (11 22 12) times
- * dA: their mean over the copies of the sector. */
-static void add_copies(const struct dea_layout_mesh *mesh, const double v[3], const double C[3],
-                       double dA, double sum[6])
+/* The middle surface of a region, halfway between the faces of the ply whatever number of elements
+ * it has, at a point of an element: nodes of the faces, the nodal basis and its gradients, the
+ * gradient dx/dX, and the area that the point stands for. */
+struct middle {
+  const int *face[2];
+  int nodes; // of a face
+  double value[PLANE_MAX], slope[PLANE_MAX][2], F[3][2], dA;
+};
+
+/* Of an element whose faces are there. weight: of the point. */
+static void find_middle(const struct dea_grid *grid, const double at[2], double weight,
+                        const double *u, struct middle *out)
 {
-  size_t copies = dea_layout_sector_copies(&mesh->sector);
-  for (size_t k = 0; k < copies; k++) {
-    double values[6] = {v[0], v[1], v[2], sqrt(C[0]), sqrt(C[1]), sqrt(C[0] * C[1] - C[2] * C[2])};
-    if (k > 0) {
-      struct dea_motion copy = dea_layout_sector_copy(&mesh->sector, k);
-      struct dea_motion back = back_to_sector(mesh, k);
-      dea_layout_sector_turn(&copy, v, values);
-      for (int i = 0; i < 2; i++) { // along x and y, as they lie in the sector
-        const double axis[2] = {i == 0, i == 1};
-        double a[2];
-        dea_layout_sector_turn(&back, axis, a);
-        values[3 + i] = sqrt(a[0] * a[0] * C[0] + 2 * a[0] * a[1] * C[2] + a[1] * a[1] * C[1]);
-      }
+  double X[2][2] = {{0}};
+  basis(grid->order, at, out->value, out->slope);
+  for (int n = 0; n < out->nodes; n++) {
+    for (int i = 0; i < 4; i++) {
+      X[i / 2][i % 2] += out->slope[n][i % 2] * grid->X[3 * out->face[0][n] + i / 2];
     }
+  }
+  const double det = X[0][0] * X[1][1] - X[0][1] * X[1][0];
+  memset(out->F, 0, sizeof out->F);
+  out->F[0][0] = out->F[1][1] = 1;
+  out->dA = det * weight;
+  for (int n = 0; n < out->nodes; n++) {
+    const double d[2] = {out->slope[n][0], out->slope[n][1]};
+    out->slope[n][0] = (d[0] * X[1][1] - d[1] * X[1][0]) / det;
+    out->slope[n][1] = (d[1] * X[0][0] - d[0] * X[0][1]) / det;
     for (int i = 0; i < 6; i++) {
-      sum[i] += dA * values[i] / (double)copies;
+      out->F[i / 2][i % 2] += 0.5 * out->slope[n][i % 2] *
+                              (u[3 * out->face[0][n] + i / 2] + u[3 * out->face[1][n] + i / 2]);
     }
   }
 }
 
-/* Means over the middle surface, halfway between the faces of the ply whatever number of elements
- * it has: of displacements, of the lengths of its two tangents, of its area. */
-static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
-                           const double *u, double *out)
+/* Adds what a number changes by with a node of the middle surface to its nodes of both faces. */
+static void add_to_faces(const struct middle *at, int n, int axis, double amount, double *weight)
 {
-  const struct dea_grid *grid = mesh->grid;
-  size_t points = (size_t)grid->order + 1;
-  double place[DEA_HEX_LINE_MAX], weight[DEA_HEX_LINE_MAX], sum[6] = {0}, area = 0;
-  int per = (grid->order + 1) * (grid->order + 1);
-  dea_gauss_rule(points, place, weight);
-  const struct layers layers = layers_of(grid, m->ply);
-  for (size_t e = layers.first; e < layers.end; e++) {
-    if (!dea_layout_mesh_within(mesh, e, m->region)) {
-      continue;
-    }
-    const int *face[2];
-    ply_faces(grid, &layers, e, face);
-    for (size_t p = 0; p < points * points; p++) {
-      const double at[2] = {place[p % points], place[p / points]};
-      double value[PLANE_MAX], slope[PLANE_MAX][2], X[3][2] = {{0}}, x[3][2] = {{0}}, v[3] = {0};
-      basis(grid->order, at, value, slope);
-      for (int n = 0; n < per; n++) {
-        for (int i = 0; i < 3; i++) {
-          double w = 0.5 * (u[3 * face[0][n] + i] + u[3 * face[1][n] + i]);
-          double place_m = i < 2 ? grid->X[3 * face[0][n] + i] : 0;
-          v[i] += value[n] * w;
-          for (int k = 0; k < 2; k++) {
-            X[i][k] += slope[n][k] * place_m;
-            x[i][k] += slope[n][k] * (place_m + w);
-          }
-        }
-      }
-      double det = X[0][0] * X[1][1] - X[0][1] * X[1][0], F[3][2], c[2] = {0}, mixed = 0;
-      for (int i = 0; i < 3; i++) { // dx/dX
-        F[i][0] = (x[i][0] * X[1][1] - x[i][1] * X[1][0]) / det;
-        F[i][1] = (x[i][1] * X[0][0] - x[i][0] * X[0][1]) / det;
-        c[0] += F[i][0] * F[i][0];
-        c[1] += F[i][1] * F[i][1];
-        mixed += F[i][0] * F[i][1];
-      }
-      double dA = det * weight[p % points] * weight[p / points];
-      const double C[3] = {c[0], c[1], mixed};
-      area += dA;
-      add_copies(mesh, v, C, dA, sum);
+  weight[3 * at->face[0][n] + axis] += 0.5 * amount;
+  weight[3 * at->face[1][n] + axis] += 0.5 * amount;
+}
+
+/* The area stretch J = sqrt(det C), C = F^T F. Adds what it changes by times the area to weight,
+ * which may be NULL: dJ = J C^-1 : F^T dF. */
+static double area_stretch(const struct middle *at, double *weight)
+{
+  double C[3] = {0};
+  for (int i = 0; i < 3; i++) {
+    C[0] += at->F[i][0] * at->F[i][0];
+    C[1] += at->F[i][1] * at->F[i][1];
+    C[2] += at->F[i][0] * at->F[i][1];
+  }
+  const double J = sqrt(C[0] * C[1] - C[2] * C[2]);
+  for (int n = 0; n < at->nodes && weight != NULL; n++) { // C^-1 slope times J
+    const double *d = at->slope[n];
+    const double c[2] = {(C[1] * d[0] - C[2] * d[1]) / J, (C[0] * d[1] - C[2] * d[0]) / J};
+    for (int i = 0; i < 3; i++) {
+      add_to_faces(at, n, i, at->dA * (at->F[i][0] * c[0] + at->F[i][1] * c[1]), weight);
     }
   }
-  for (int i = 0; i < 3; i++) {
-    out[DEA_OBSERVED_X + i] = sum[i] / area;
-    out[DEA_OBSERVED_STRETCH_X + i] = sum[3 + i] / area;
+  return J;
+}
+
+/* The same of the length of the tangent along x or y, in the mean over the copies of the sector: of
+ * the direction a in the sector d|F a| = F a . dF a / |F a|. */
+static double tangent_length(const struct dea_layout_mesh *mesh, bool along_y,
+                             const struct middle *at, double *weight)
+{
+  const size_t copies = dea_layout_sector_copies(&mesh->sector);
+  const double axis[2] = {along_y ? 0 : 1, along_y ? 1 : 0};
+  double mean = 0;
+  for (size_t k = 0; k < copies; k++) {
+    double a[2] = {axis[0], axis[1]}, along[3];
+    if (k > 0) {
+      struct dea_motion back = back_to_sector(mesh, k);
+      dea_layout_sector_turn(&back, axis, a);
+    }
+    for (int i = 0; i < 3; i++) {
+      along[i] = at->F[i][0] * a[0] + at->F[i][1] * a[1];
+    }
+    const double length = length_of(along);
+    mean += length / (double)copies;
+    for (int i = 0; i < 3 * at->nodes && weight != NULL; i++) {
+      const double *slope = at->slope[i / 3];
+      const double by = at->dA * (slope[0] * a[0] + slope[1] * a[1]) / (length * (double)copies);
+      add_to_faces(at, i / 3, i % 3, by * along[i % 3], weight);
+    }
+  }
+  return mean;
+}
+
+/* The same of the displacement along x, y or z, of which share[3] is along the axes of the sector
+ * in the mean over its copies. */
+static double displacement_along(const struct middle *at, const double share[3], const double *u,
+                                 double *weight)
+{
+  double sum = 0;
+  for (int i = 0; i < 3 * at->nodes; i++) {
+    const double by = at->value[i / 3] * share[i % 3];
+    sum += 0.5 * by * (u[3 * at->face[0][i / 3] + i % 3] + u[3 * at->face[1][i / 3] + i % 3]);
+    if (weight != NULL) {
+      add_to_faces(at, i / 3, i % 3, at->dA * by, weight);
+    }
+  }
+  return sum;
+}
+
+/* How much of a displacement of the sector lies along x, y or z in the mean over its copies. */
+static void share_of_copies(const struct dea_layout_sector *sector, int along, double share[3])
+{
+  size_t copies = dea_layout_sector_copies(sector);
+  memset(share, 0, 3 * sizeof *share);
+  for (size_t k = 0; k < copies; k++) {
+    for (int i = 0; i < 3; i++) {
+      double axis[3] = {i == 0, i == 1, i == 2};
+      if (k > 0) {
+        struct dea_motion copy = dea_layout_sector_copy(sector, k);
+        dea_layout_sector_turn(&copy, axis, axis);
+      }
+      share[i] += axis[along] / (double)copies;
+    }
+  }
+}
+
+/* Means over a region: of displacements, of the lengths of its two tangents, of its area. */
+enum { REGION_MOTIONS = 6 };
+static const enum dea_observed region_motions[REGION_MOTIONS] = {
+    DEA_OBSERVED_X,         DEA_OBSERVED_Y,         DEA_OBSERVED_Z,
+    DEA_OBSERVED_STRETCH_X, DEA_OBSERVED_STRETCH_Y, DEA_OBSERVED_AREA_STRETCH};
+
+/* All of them into values, and how `motion` changes with each displacement into weight, 0 before;
+ * NULL: not wanted. */
+static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
+                           const double *u, double *values, enum dea_observed motion,
+                           double *weight)
+{
+  const struct dea_grid *grid = mesh->grid;
+  const size_t points = (size_t)grid->order + 1;
+  const struct layers layers = layers_of(mesh, m->ply);
+  struct middle at = {.nodes = (int)(points * points)};
+  double place[DEA_HEX_LINE_MAX], part[DEA_HEX_LINE_MAX], share[3][3];
+  double sum[REGION_MOTIONS] = {0}, area = 0;
+  dea_gauss_rule(points, place, part);
+  for (int k = 0; k < 3; k++) {
+    share_of_copies(&mesh->sector, k, share[k]);
+  }
+  for (size_t e = layers.first; e < layers.end; e++) {
+    ply_faces(grid, &layers, e, at.face);
+    for (size_t p = 0; p < points * points && dea_layout_mesh_within(mesh, e, m->region); p++) {
+      find_middle(grid, (const double[2]){place[p % points], place[p / points]},
+                  part[p % points] * part[p / points], u, &at);
+      area += at.dA;
+      for (int k = 0; k < REGION_MOTIONS; k++) {
+        double *slope = region_motions[k] == motion ? weight : NULL;
+        sum[k] += at.dA * (k < 3   ? displacement_along(&at, share[k], u, slope)
+                           : k < 5 ? tangent_length(mesh, k == 4, &at, slope)
+                                   : area_stretch(&at, slope));
+      }
+    }
+  }
+  for (int k = 0; k < REGION_MOTIONS; k++) {
+    values[region_motions[k]] = sum[k] / area;
+  }
+  for (size_t i = 0; i < 3 * grid->node_count && weight != NULL; i++) {
+    weight[i] /= area;
   }
 }
 
@@ -510,12 +569,18 @@ static dea_status observe_channels(struct dea_context *ctx, struct dea_observer 
 }
 
 static void observe_volume(const struct dea_observer *o, size_t pressure, const double *u,
-                           double *values)
+                           double *values, double *weight)
 {
+  const double copies = (double)dea_layout_sector_copies(&o->mesh->sector);
   if (o->pressures[pressure] != NULL) {
     values[DEA_OBSERVED_PRESSURE] = dea_pressure_at_Pa(o->pressures[pressure], u);
-    values[DEA_OBSERVED_VOLUME] = (double)dea_layout_sector_copies(&o->mesh->sector) *
-                                  dea_pressure_volume_m3(o->pressures[pressure], u);
+    values[DEA_OBSERVED_VOLUME] = copies * dea_pressure_volume_m3(o->pressures[pressure], u);
+  }
+  if (o->pressures[pressure] != NULL && weight != NULL) {
+    dea_pressure_volume_slope(o->pressures[pressure], u, weight);
+    for (size_t i = 0; i < 3 * o->mesh->grid->node_count; i++) {
+      weight[i] *= copies;
+    }
   }
 }
 
@@ -534,170 +599,6 @@ static void observe_point(const struct dea_observer *o, size_t monitor, const do
   values[DEA_OBSERVED_OUTWARDS] = v[0] * along[0] + v[1] * along[1];
   values[DEA_OBSERVED_STRETCH] = 1 + values[DEA_OBSERVED_OUTWARDS] / length;
 }
-
-/* The monitor of a disc that is a column; SIZE_MAX: none is. */
-static size_t of_column(const struct dea_observer *o, int column)
-{
-  const struct dea_layout *l = o->mesh->layout;
-  for (size_t i = 0; i < l->disc_monitor_count; i++) {
-    if (o->of_disc[i].column == column) {
-      return l->monitor_count + i;
-    }
-  }
-  return SIZE_MAX;
-}
-
-double dea_observer_column(const struct dea_observer *o, int column, const double *u)
-{
-  double values[DEA_OBSERVED_COUNT];
-  const size_t i = of_column(o, column);
-  if (i == SIZE_MAX) {
-    return NAN;
-  }
-  observe_point(o, i, u, values);
-  return values[o->of_disc[i - o->mesh->layout->monitor_count].motion];
-}
-
-void dea_observer_describe(const struct dea_observer *o, const double *u,
-                           struct dea_load_point *out)
-{
-  for (size_t i = 0; i < o->mesh->layout->disc_monitor_count; i++) {
-    const int column = o->of_disc[i].column;
-    dea_point_set(out, column, dea_observer_column(o, column, u));
-  }
-}
-
-bool dea_observer_column_gradient(struct dea_observer *o, struct dea_solid *solid, int column,
-                                  double *weight)
-{
-  const size_t i = of_column(o, column);
-  return i != SIZE_MAX &&
-         dea_observer_gradient(o, solid, i, o->of_disc[i - o->mesh->layout->monitor_count].motion,
-                               weight);
-}
-
-dea_status dea_observer_errors(struct dea_context *ctx, struct dea_observer *o,
-                               struct dea_solid *solid, struct dea_load_point *out)
-{
-  enum { MOST = 4 };
-  const size_t count = o->mesh->layout->disc_monitor_count, dofs = solid->problem.dofs;
-  struct dea_solid_quantity each[MOST];
-  double error[MOST];
-  int columns[MOST];
-  size_t asked = 0;
-  if (count == 0 || !dea_load_point_trusted(out) || out->voltage_V == 0) {
-    return DEA_OK;
-  }
-  double *weights = dea_solid_alloc(ctx, MOST * dofs, sizeof *weights);
-  DEA_TRY_MEMORY(weights != NULL);
-  for (size_t i = 0; i < count && asked < MOST; i++) {
-    if (o->of_disc[i].error_column >= 0) {
-      each[asked] = (struct dea_solid_quantity){.weight = weights + asked * dofs};
-      dea_observer_column_gradient(o, solid, o->of_disc[i].column, weights + asked * dofs);
-      columns[asked++] = o->of_disc[i].error_column;
-    }
-  }
-  const dea_status status = dea_solid_errors(ctx, solid, each, asked, error, NULL);
-  for (size_t k = 0; k < asked && status == DEA_OK; k++) {
-    dea_point_set(out, columns[k], error[k]);
-  }
-  dea_free(ctx, weights);
-  return status;
-}
-
-static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
-{
-  const struct dea_layout *l = o->mesh->layout;
-  const double *u = dea_solid_displacement(solid);
-  for (size_t i = 0; i < l->body_count; i++) {
-    nothing_observed(o->body[i]);
-    observe_body(o->mesh, solid, i, o->body[i]);
-  }
-  for (size_t i = 0; i < l->monitor_count; i++) {
-    const struct dea_layout_monitor *m = &l->monitors[i];
-    double *values = o->monitor[i], now[3];
-    nothing_observed(values);
-    switch (m->kind) {
-    case DEA_MONITOR_POINT:
-    case DEA_MONITOR_RADIUS:
-      observe_point(o, i, u, values);
-      break;
-    case DEA_MONITOR_LINE:
-      values[DEA_OBSERVED_STRETCH] = 1 / line_between(o->mesh, m, o->probes[i], u, now);
-      values[DEA_OBSERVED_STRETCH] *= length_of(now);
-      break;
-    case DEA_MONITOR_REGION:
-      observe_region(o->mesh, m, u, values);
-      break;
-    case DEA_MONITOR_BODY:
-      memcpy(values, o->body[m->body], sizeof o->body[m->body]);
-      break;
-    case DEA_MONITOR_VOLUME:
-      observe_volume(o, m->pressure, u, values);
-      break;
-    case DEA_MONITOR_CONTACT:
-      observe_contact(o, m->contact, u, values);
-      break;
-    }
-  }
-}
-
-dea_status dea_observer_read(struct dea_context *ctx, struct dea_observer *o,
-                             struct dea_solid *solid, struct dea_observation *out)
-{
-  const struct dea_layout *l = o->mesh->layout;
-  observe_monitors(o, solid);
-  DEA_TRY(ctx, observe_channels(ctx, o, solid));
-  *out = (struct dea_observation){.monitor_count = l->monitor_count,
-                                  .body_count = l->body_count,
-                                  .channel_count = l->channel_count,
-                                  .monitor = (const double(*)[DEA_OBSERVED_COUNT])o->monitor,
-                                  .body = (const double(*)[DEA_OBSERVED_COUNT])o->body,
-                                  .channel = o->channel};
-  return DEA_OK;
-}
-
-void dea_observer_set_currents(struct dea_observer *o, const double *current_A)
-{
-  for (size_t k = 0; k < o->mesh->layout->channel_count; k++) {
-    o->channel[k].current_A = current_A[k];
-  }
-}
-
-/* By a difference over a motion as small as rounding lets it be: most of them are linear. */
-dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observer *o,
-                                      struct dea_solid *solid, const double *v, double *out)
-{
-  static const double little = 1e-5; // of the size of the mesh
-  const struct dea_grid *grid = o->mesh->grid;
-  size_t count = 3 * grid->node_count;
-  double *u = dea_solid_displacement(solid), *keep = dea_solid_alloc(ctx, count, sizeof *keep);
-  double most = 0, size = 0;
-  DEA_TRY_MEMORY(keep != NULL);
-  memcpy(keep, u, count * sizeof *keep);
-  for (size_t i = 0; i < count; i++) {
-    most = fmax(most, fabs(v[i]));
-    size = fmax(size, fabs(grid->X[i]));
-  }
-  double scale = most > 0 ? little * size / most : 0;
-  for (int side = -1; side <= 1; side += 2) {
-    for (size_t i = 0; i < count; i++) {
-      u[i] = keep[i] + side * scale * v[i];
-    }
-    observe_monitors(o, solid);
-    for (size_t i = 0; i < o->mesh->layout->monitor_count; i++) {
-      for (int k = 0; k < DEA_OBSERVED_MOTIONS; k++) {
-        double *to = &out[i * DEA_OBSERVED_MOTIONS + (size_t)k], value = o->monitor[i][k];
-        *to = side < 0 ? -value : scale > 0 ? (*to + value) / (2 * scale) : 0 * value;
-      }
-    }
-  }
-  memcpy(u, keep, count * sizeof *u);
-  dea_free(ctx, keep);
-  return DEA_OK;
-}
-
-// Gradients --------------------------------------------------------------------------------------
 
 /* How a point's displacement along an axis, or a line's stretch, changes with the displacements of
  * the probes in the sector, along [probes][3]. Returns how many. */
@@ -745,6 +646,80 @@ static void gradient_of_probes(const struct dea_observer *o, const double *u, si
   }
 }
 
+/* All that a monitor shows into values, and into weight, 0 before, how `motion` changes with each
+ * displacement; NULL: not wanted. */
+static void observe_monitor(struct dea_observer *o, struct dea_solid *solid, size_t i,
+                            double *values, enum dea_observed motion, double *weight)
+{
+  const struct dea_layout_monitor *m = &o->mesh->layout->monitors[i];
+  const double *u = dea_solid_displacement(solid);
+  double now[3];
+  nothing_observed(values);
+  switch (m->kind) {
+  case DEA_MONITOR_POINT:
+  case DEA_MONITOR_RADIUS:
+    observe_point(o, i, u, values);
+    break;
+  case DEA_MONITOR_LINE:
+    values[DEA_OBSERVED_STRETCH] = 1 / line_between(o->mesh, m, o->probes[i], u, now);
+    values[DEA_OBSERVED_STRETCH] *= length_of(now);
+    break;
+  case DEA_MONITOR_REGION:
+    observe_region(o->mesh, m, u, values, motion, weight);
+    return;
+  case DEA_MONITOR_BODY:
+    observe_body(o->mesh, solid, m->body, values);
+    if (weight != NULL) { // turns are unknowns times the length
+      const struct dea_solid_body *body = &solid->problem.bodies[m->body];
+      weight[3 * body->node + (size_t)motion] =
+          motion < DEA_OBSERVED_TURN_X ? 1 : 1 / body->length_m;
+    }
+    return;
+  case DEA_MONITOR_VOLUME:
+    observe_volume(o, m->pressure, u, values, weight);
+    return;
+  case DEA_MONITOR_CONTACT: // forces have no slope
+    observe_contact(o, m->contact, u, values);
+    return;
+  }
+  if (weight != NULL) {
+    gradient_of_probes(o, u, i, motion, weight);
+  }
+}
+
+bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size_t monitor,
+                           enum dea_observed motion, double *weight)
+{
+  double values[DEA_OBSERVED_COUNT];
+  const bool known = dea_observed_has(o->mesh->layout->monitors[monitor].kind, motion) &&
+                     (motion < DEA_OBSERVED_FORCE_X || motion == DEA_OBSERVED_VOLUME);
+  memset(weight, 0, solid->problem.dofs * sizeof *weight);
+  if (known) {
+    observe_monitor(o, solid, monitor, values, motion, weight);
+  }
+  return known;
+}
+
+dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observer *o,
+                                      struct dea_solid *solid, const double *const v[2],
+                                      double (*out)[2])
+{
+  const size_t count = 3 * o->mesh->grid->node_count;
+  double *weight = dea_solid_alloc(ctx, solid->problem.dofs, sizeof *weight);
+  DEA_TRY_MEMORY(weight != NULL);
+  for (size_t k = 0; k < o->mesh->layout->monitor_count * DEA_OBSERVED_MOTIONS; k++) {
+    const bool known = dea_observer_gradient(o, solid, k / DEA_OBSERVED_MOTIONS,
+                                             (enum dea_observed)(k % DEA_OBSERVED_MOTIONS), weight);
+    out[k][0] = out[k][1] = known ? 0 : NAN;
+    for (size_t i = 0; i < count && known; i++) {
+      out[k][0] += weight[i] * v[0][i];
+      out[k][1] += weight[i] * v[1][i];
+    }
+  }
+  dea_free(ctx, weight);
+  return DEA_OK;
+}
+
 size_t dea_observer_probes(const struct dea_observer *o, struct dea_solid *solid, size_t monitor,
                            enum dea_observed motion, struct dea_recover_probe out[2])
 {
@@ -761,154 +736,6 @@ size_t dea_observer_probes(const struct dea_observer *o, struct dea_solid *solid
                                         .along = {along[p][0], along[p][1], along[p][2]}};
   }
   return count;
-}
-
-/* The nodal basis and its gradients at a point of an element in the plane, its area by local
- * coordinates, and the gradients of the deformed middle surface dx/dX. */
-static double slopes_of(const struct dea_grid *grid, const int *const face[2], const double at[2],
-                        const double *u, double *value, double (*slope)[2], double F[3][2])
-{
-  double X[2][2] = {{0}};
-  int per = (grid->order + 1) * (grid->order + 1);
-  basis(grid->order, at, value, slope);
-  for (int n = 0; n < per; n++) {
-    for (int i = 0; i < 4; i++) {
-      X[i / 2][i % 2] += slope[n][i % 2] * grid->X[3 * face[0][n] + i / 2];
-    }
-  }
-  double det = X[0][0] * X[1][1] - X[0][1] * X[1][0];
-  memset(F, 0, 3 * sizeof *F);
-  F[0][0] = F[1][1] = 1;
-  for (int n = 0; n < per; n++) {
-    const double d[2] = {slope[n][0], slope[n][1]};
-    slope[n][0] = (d[0] * X[1][1] - d[1] * X[1][0]) / det;
-    slope[n][1] = (d[1] * X[0][0] - d[0] * X[0][1]) / det;
-    for (int i = 0; i < 6; i++) {
-      double w = 0.5 * (u[3 * face[0][n] + i / 2] + u[3 * face[1][n] + i / 2]);
-      F[i / 2][i % 2] += slope[n][i % 2] * w;
-    }
-  }
-  return det;
-}
-
-/* Adds to the nodes of an element what the area stretch J = sqrt(det C), C = F^T F, at a point of
- * the area dA changes by: dJ = J C^-1 : F^T dF. */
-static void add_area_stretch(const int *const face[2], int nodes, double dA, double (*slope)[2],
-                             double F[3][2], double *weight)
-{
-  double C[3] = {0};
-  for (int i = 0; i < 3; i++) {
-    C[0] += F[i][0] * F[i][0];
-    C[1] += F[i][1] * F[i][1];
-    C[2] += F[i][0] * F[i][1];
-  }
-  double J = sqrt(C[0] * C[1] - C[2] * C[2]);
-  for (int n = 0; n < nodes; n++) { // C^-1 slope times J
-    const double *d = slope[n];
-    const double c[2] = {(C[1] * d[0] - C[2] * d[1]) / J, (C[0] * d[1] - C[2] * d[0]) / J};
-    for (int i = 0; i < 3; i++) {
-      double amount = 0.5 * dA * (F[i][0] * c[0] + F[i][1] * c[1]);
-      weight[3 * face[0][n] + i] += amount;
-      weight[3 * face[1][n] + i] += amount;
-    }
-  }
-}
-
-/* Adds the same of the length of the tangent along x or y, in the mean over the copies of the
- * sector: of the direction a in the sector d|F a| = F a . dF a / |F a|. */
-static void add_tangent(const struct dea_layout_mesh *mesh, bool along_y, const int *const face[2],
-                        int nodes, double dA, double (*slope)[2], double F[3][2], double *weight)
-{
-  const size_t copies = dea_layout_sector_copies(&mesh->sector);
-  const double axis[2] = {along_y ? 0 : 1, along_y ? 1 : 0};
-  for (size_t k = 0; k < copies; k++) {
-    double a[2] = {axis[0], axis[1]}, along[3], size = 0;
-    if (k > 0) {
-      struct dea_motion back = back_to_sector(mesh, k);
-      dea_layout_sector_turn(&back, axis, a);
-    }
-    for (int i = 0; i < 3; i++) {
-      along[i] = F[i][0] * a[0] + F[i][1] * a[1];
-      size += along[i] * along[i];
-    }
-    for (int n = 0; n < nodes; n++) {
-      const double by =
-          0.5 * dA * (slope[n][0] * a[0] + slope[n][1] * a[1]) / (sqrt(size) * (double)copies);
-      for (int i = 0; i < 3; i++) {
-        weight[3 * face[0][n] + i] += by * along[i];
-        weight[3 * face[1][n] + i] += by * along[i];
-      }
-    }
-  }
-}
-
-/* How much of a displacement of the sector lies along x, y or z in the mean over its copies. */
-static void share_of_copies(const struct dea_layout_sector *sector, enum dea_observed motion,
-                            double share[3])
-{
-  size_t copies = dea_layout_sector_copies(sector);
-  memset(share, 0, 3 * sizeof *share);
-  for (size_t k = 0; k < copies; k++) {
-    for (int i = 0; i < 3; i++) {
-      double axis[3] = {i == 0, i == 1, i == 2};
-      if (k > 0) {
-        struct dea_motion copy = dea_layout_sector_copy(sector, k);
-        dea_layout_sector_turn(&copy, axis, axis);
-      }
-      share[i] += axis[motion - DEA_OBSERVED_X] / (double)copies;
-    }
-  }
-}
-
-/* Of a region's mean stretch along x or y or area stretch, or of its mean displacement along x, y
- * or z. Returns the area that the means are over. */
-static double gradient_of_region(const struct dea_layout_mesh *mesh,
-                                 const struct dea_layout_monitor *m, enum dea_observed motion,
-                                 const double *u, double *weight)
-{
-  const struct dea_grid *grid = mesh->grid;
-  size_t points = (size_t)grid->order + 1;
-  int per = (grid->order + 1) * (grid->order + 1);
-  bool shift = motion <= DEA_OBSERVED_Z;
-  double place[DEA_HEX_LINE_MAX], part[DEA_HEX_LINE_MAX], share[3], area = 0;
-  if (shift) {
-    share_of_copies(&mesh->sector, motion, share);
-  }
-  dea_gauss_rule(points, place, part);
-  const struct layers layers = layers_of(grid, m->ply);
-  for (size_t e = layers.first; e < layers.end; e++) {
-    const int *face[2];
-    ply_faces(grid, &layers, e, face);
-    for (size_t p = 0; p < points * points && dea_layout_mesh_within(mesh, e, m->region); p++) {
-      const double at[2] = {place[p % points], place[p / points]};
-      double value[PLANE_MAX], slope[PLANE_MAX][2], F[3][2];
-      double dA =
-          slopes_of(grid, face, at, u, value, slope, F) * part[p % points] * part[p / points];
-      area += dA;
-      if (motion == DEA_OBSERVED_AREA_STRETCH) {
-        add_area_stretch(face, per, dA, slope, F, weight);
-      } else if (!shift) {
-        add_tangent(mesh, motion == DEA_OBSERVED_STRETCH_Y, face, per, dA, slope, F, weight);
-      }
-      for (int i = 0; i < 3 * per && shift; i++) {
-        weight[3 * face[0][i / 3] + i % 3] += 0.5 * dA * value[i / 3] * share[i % 3];
-        weight[3 * face[1][i / 3] + i % 3] += 0.5 * dA * value[i / 3] * share[i % 3];
-      }
-    }
-  }
-  return area;
-}
-
-static bool knows_gradient(enum dea_layout_monitor_kind kind, enum dea_observed motion)
-{
-  const bool shift = motion <= DEA_OBSERVED_Z;
-  return kind == DEA_MONITOR_POINT    ? shift
-         : kind == DEA_MONITOR_RADIUS ? dea_observed_has(kind, motion)
-         : kind == DEA_MONITOR_LINE   ? motion == DEA_OBSERVED_STRETCH
-         : kind == DEA_MONITOR_REGION
-             ? shift || (motion >= DEA_OBSERVED_STRETCH_X && motion <= DEA_OBSERVED_AREA_STRETCH)
-         : kind == DEA_MONITOR_VOLUME ? motion == DEA_OBSERVED_VOLUME
-                                      : kind == DEA_MONITOR_BODY && motion <= DEA_OBSERVED_TURN_Z;
 }
 
 bool dea_observer_force_direction(const struct dea_observer *o, const struct dea_solid *solid,
@@ -929,44 +756,102 @@ bool dea_observer_force_direction(const struct dea_observer *o, const struct dea
   return known;
 }
 
-bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size_t monitor,
-                           enum dea_observed motion, double *weight)
+// Columns ---------------------------------------------------------------------------------------
+
+/* The monitor of a disc that is a column; SIZE_MAX: none is. */
+static size_t of_column(const struct dea_observer *o, int column)
 {
-  const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
-  size_t count = 3 * o->mesh->grid->node_count;
-  memset(weight, 0, count * sizeof *weight);
-  if (!knows_gradient(m->kind, motion)) {
-    return false;
-  }
-  switch (m->kind) {
-  case DEA_MONITOR_POINT:
-  case DEA_MONITOR_LINE:
-  case DEA_MONITOR_RADIUS:
-    gradient_of_probes(o, dea_solid_displacement(solid), monitor, motion, weight);
-    break;
-  case DEA_MONITOR_REGION: {
-    double area = gradient_of_region(o->mesh, m, motion, dea_solid_displacement(solid), weight);
-    for (size_t i = 0; i < count; i++) {
-      weight[i] /= area;
+  const struct dea_layout *l = o->mesh->layout;
+  for (size_t i = 0; i < l->disc_monitor_count; i++) {
+    if (o->of_disc[i].column == column) {
+      return l->monitor_count + i;
     }
-    break;
   }
-  case DEA_MONITOR_BODY: {
-    const struct dea_solid_body *body = &solid->problem.bodies[m->body];
-    weight[3 * body->node + (size_t)motion] =
-        motion < DEA_OBSERVED_TURN_X ? 1 : 1 / body->length_m; // turns are unknowns times that
-    break;
+  return SIZE_MAX;
+}
+
+double dea_observer_column(const struct dea_observer *o, int column, const double *u)
+{
+  double values[DEA_OBSERVED_COUNT];
+  const size_t i = of_column(o, column);
+  if (i == SIZE_MAX) {
+    return NAN;
   }
-  case DEA_MONITOR_VOLUME:
-    if (o->pressures[m->pressure] != NULL) {
-      dea_pressure_volume_slope(o->pressures[m->pressure], dea_solid_displacement(solid), weight);
+  observe_point(o, i, u, values);
+  return values[o->of_disc[i - o->mesh->layout->monitor_count].motion];
+}
+
+void dea_observer_describe(const struct dea_observer *o, const double *u,
+                           struct dea_load_point *out)
+{
+  for (size_t i = 0; i < o->mesh->layout->disc_monitor_count; i++) {
+    const int column = o->of_disc[i].column;
+    dea_point_set(out, column, dea_observer_column(o, column, u));
+  }
+}
+
+bool dea_observer_column_gradient(struct dea_observer *o, struct dea_solid *solid, int column,
+                                  double *weight)
+{
+  const size_t i = of_column(o, column);
+  return i != SIZE_MAX &&
+         dea_observer_gradient(o, solid, i, o->of_disc[i - o->mesh->layout->monitor_count].motion,
+                               weight);
+}
+
+dea_status dea_observer_errors(struct dea_context *ctx, struct dea_observer *o,
+                               struct dea_solid *solid, struct dea_load_point *out)
+{
+  enum { MOST = 4 };
+  const size_t count = o->mesh->layout->disc_monitor_count, dofs = solid->problem.dofs;
+  struct dea_recover_quantity each[MOST];
+  double error[MOST];
+  int columns[MOST];
+  size_t asked = 0;
+  if (count == 0 || !dea_load_point_trusted(out) || out->voltage_V == 0) {
+    return DEA_OK;
+  }
+  double *weights = dea_solid_alloc(ctx, MOST * dofs, sizeof *weights);
+  DEA_TRY_MEMORY(weights != NULL);
+  for (size_t i = 0; i < count && asked < MOST; i++) {
+    if (o->of_disc[i].error_column >= 0) {
+      each[asked] = (struct dea_recover_quantity){.z = weights + asked * dofs};
+      dea_observer_column_gradient(o, solid, o->of_disc[i].column, weights + asked * dofs);
+      columns[asked++] = o->of_disc[i].error_column;
     }
-    for (size_t i = 0; i < count; i++) {
-      weight[i] *= (double)dea_layout_sector_copies(&o->mesh->sector);
-    }
-    break;
-  case DEA_MONITOR_CONTACT: // forces alone
-    break;
   }
-  return true;
+  const dea_status status = dea_solid_errors(ctx, solid, each, asked, error, NULL);
+  for (size_t k = 0; k < asked && status == DEA_OK; k++) {
+    dea_point_set(out, columns[k], error[k]);
+  }
+  dea_free(ctx, weights);
+  return status;
+}
+
+dea_status dea_observer_read(struct dea_context *ctx, struct dea_observer *o,
+                             struct dea_solid *solid, struct dea_observation *out)
+{
+  const struct dea_layout *l = o->mesh->layout;
+  for (size_t i = 0; i < l->body_count; i++) {
+    nothing_observed(o->body[i]);
+    observe_body(o->mesh, solid, i, o->body[i]);
+  }
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    observe_monitor(o, solid, i, o->monitor[i], DEA_OBSERVED_COUNT, NULL);
+  }
+  DEA_TRY(ctx, observe_channels(ctx, o, solid));
+  *out = (struct dea_observation){.monitor_count = l->monitor_count,
+                                  .body_count = l->body_count,
+                                  .channel_count = l->channel_count,
+                                  .monitor = (const double(*)[DEA_OBSERVED_COUNT])o->monitor,
+                                  .body = (const double(*)[DEA_OBSERVED_COUNT])o->body,
+                                  .channel = o->channel};
+  return DEA_OK;
+}
+
+void dea_observer_set_currents(struct dea_observer *o, const double *current_A)
+{
+  for (size_t k = 0; k < o->mesh->layout->channel_count; k++) {
+    o->channel[k].current_A = current_A[k];
+  }
 }

@@ -23,19 +23,20 @@ dea_status dea_observer_read(struct dea_context *ctx, struct dea_observer *obser
 /* Puts the currents of the channels' sources, [channels of the layout], into what was taken. */
 void dea_observer_set_currents(struct dea_observer *observer, const double *current_A);
 
-/* How much the monitors' motions change by a small motion v [3 node_count] from where the solid is,
- * out [monitor_count][DEA_OBSERVED_MOTIONS]; NAN as in an observation. The solid stays as it is. */
+/* How much the monitors' motions change by two small motions v [3 node_count] from where the solid
+ * is, out [monitor_count * DEA_OBSERVED_MOTIONS]; NAN as in an observation. */
 dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observer *observer,
-                                      struct dea_solid *solid, const double *v, double *out);
+                                      struct dea_solid *solid, const double *const v[2],
+                                      double (*out)[2]);
 
 /* How a motion of a monitor changes with each displacement, from where the solid is: weight
- * [3 node_count]. false: that is not known of this motion (forces). */
+ * [dofs]. false: that is not known of this motion (forces). */
 bool dea_observer_gradient(struct dea_observer *observer, struct dea_solid *solid, size_t monitor,
                            enum dea_observed motion, double *weight);
 
 /* The monitors that a disc brings, which are columns of load points (device/disc_layout.h): all of
  * them at displacements u; one of them, NAN: the column is none; how it changes with each
- * displacement, weight [3 node_count], false: the column is none; and their estimated errors at the
+ * displacement, weight [dofs], false: the column is none; and their estimated errors at the
  * solid's equilibrium, if the point is one of which they say something. */
 void dea_observer_describe(const struct dea_observer *observer, const double *u,
                            struct dea_load_point *out);

@@ -1,5 +1,4 @@
 /* Slopes of the model "3d" by changed devices (docs/theory/gradients.md). */
-#include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/model3d/solid_model.h"
@@ -181,14 +180,10 @@ static void keep_controls(struct dea_model *model)
 static dea_status build_variant(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_model *own = &model->variant->own;
-  DEA_TRY(ctx,
-          dea_device_mesh_follow(ctx, model->device, &model->settings, &own->mesh, &model->mesh));
-  dea_solid_model_check_mesh(model);
+  DEA_TRY(ctx, dea_solid_model_mesh(ctx, model, &own->mesh));
   if (!same_supports(model->layout, own->layout)) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a change of what is held");
   }
-  DEA_TRY(ctx, dea_plies_create(ctx, &model->mesh, &model->memory, &model->plies));
-  dea_solid_model_find_band(model);
   DEA_TRY(ctx, dea_solid_model_assemble(ctx, model));
   DEA_TRY(ctx, dea_solid_dead_loads_set(ctx, model));
   DEA_TRY(ctx, dea_solid_supports_hold(ctx, model, true));
@@ -208,9 +203,7 @@ static dea_status build_variant(struct dea_context *ctx, struct dea_model *model
       dea_contact_hold(model->contacts[i], own->contacts[i]);
     }
   }
-  DEA_TRY(ctx, check_held(ctx, model));
-  return DEA_CHAIN(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, model->contacts,
-                                            &model->observer));
+  return DEA_CHAIN(ctx, check_held(ctx, model));
 }
 
 /* Supports and bodies to where the changed device has them: these are no unknowns, which stay. */
@@ -236,9 +229,8 @@ static dea_status enter_tip(struct dea_context *ctx, struct dea_model *model,
 {
   struct dea_model_variant *v = model->variant;
   const struct dea_pressed own = {model->indent->probe, model->indent->depth_m};
-  DEA_TRY(ctx,
-          dea_indent_create_variant(ctx, &model->mesh, model->solid,
-                                    pressed != NULL ? pressed : &own, v->own.indent, &v->indent));
+  DEA_TRY(ctx, dea_indent_create(ctx, &model->mesh, model->solid, pressed != NULL ? pressed : &own,
+                                 v->own.indent, &v->indent));
   model->indent = v->indent;
   return DEA_OK;
 }

@@ -115,6 +115,15 @@ static dea_status find_charged(struct dea_context *ctx, struct dea_solid *s, str
   return status;
 }
 
+/* Work of a source, the integral of V dQ, on a film whose voltage and capacitance go from [0] to
+ * [1]: the integral of Q dV is half that of C by V^2, along which C is nearly straight. */
+static double source_work(const double voltage_V[2], const double capacitance_F[2])
+{
+  const double square[2] = {voltage_V[0] * voltage_V[0], voltage_V[1] * voltage_V[1]};
+  return capacitance_F[1] * square[1] - capacitance_F[0] * square[0] -
+         0.25 * (capacitance_F[0] + capacitance_F[1]) * (square[1] - square[0]);
+}
+
 /* Work of the sources from one to the other. */
 static double work_between(const struct dea_solid *s, const struct charged *from,
                            const struct charged *to)
@@ -123,7 +132,7 @@ static double work_between(const struct dea_solid *s, const struct charged *from
   for (size_t i = 0; i < s->problem.own_count; i++) {
     const double voltage_V[2] = {from->voltage_V[i], to->voltage_V[i]};
     const double capacitance_F[2] = {from->capacitance_F[i], to->capacitance_F[i]};
-    sum += dea_solid_source_work(voltage_V, capacitance_F);
+    sum += source_work(voltage_V, capacitance_F);
   }
   dea_solid_sum(&sum, 1);
   return sum;
@@ -425,14 +434,6 @@ void dea_solid_time_reject(struct dea_solid_time *time)
 
 /* ---- energies, works and error of a step ---- */
 
-/* The integral of Q dV is half that of C by V^2, along which C is nearly straight. */
-double dea_solid_source_work(const double voltage_V[2], const double capacitance_F[2])
-{
-  const double square[2] = {voltage_V[0] * voltage_V[0], voltage_V[1] * voltage_V[1]};
-  return capacitance_F[1] * square[1] - capacitance_F[0] * square[0] -
-         0.25 * (capacitance_F[0] + capacitance_F[1]) * (square[1] - square[0]);
-}
-
 double dea_solid_time_charged_J(const struct dea_solid_time *time, bool tried)
 {
   return tried ? time->charged_next.energy_J : time->charged.energy_J;
@@ -462,7 +463,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   const double voltage_V[2] = {t->controls[0], s->state.voltage_V};
   const double capacitance_F[2] = {t->capacitance_F, t->capacitance_next_F};
   sums->supply += t->own ? work_between(s, &t->charged, &t->charged_next)
-                         : dea_solid_source_work(voltage_V, capacitance_F);
+                         : source_work(voltage_V, capacitance_F);
   sums->stored = stored - t->first_J;
   sums->branches = branches.stored;
   sums->dissipated += branches.dissipated;

@@ -70,10 +70,6 @@ void dea_solid_time_reject(struct dea_solid_time *time);
 /* Of the step that was closed last, or at the accepted state. */
 struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *time, bool tried);
 
-/* Work of a source, the integral of V dQ, on a film whose voltage and capacitance go from [0] to
- * [1]. */
-double dea_solid_source_work(const double voltage_V[2], const double capacitance_F[2]);
-
 /* With own voltages: sum of charges times voltages, of the step that was closed last, or at the
  * accepted state. */
 double dea_solid_time_charged_J(const struct dea_solid_time *time, bool tried);

@@ -26,12 +26,6 @@ struct work {
   double close, pre_stretch;
 };
 
-static const double *field(const struct dea_field_mesh *mesh, const char *name)
-{
-  const struct dea_mesh_field *found = dea_field_mesh_find(mesh, name);
-  return found != NULL ? found->values : NULL;
-}
-
 static bool is_on(const struct work *w, const double *X, double c, double s)
 {
   return fabs(c * X[1] - s * X[0]) < w->close && c * X[0] + s * X[1] > -w->close;
@@ -163,14 +157,11 @@ dea_status dea_line_profile(struct dea_context *ctx, const struct dea_field_mesh
 {
   struct work w = {.memory = {.ctx = ctx},
                    .surface = surface,
-                   .u = field(surface, "displacement_m"),
-                   .stretch = field(surface, "plane_stretch"),
-                   .tension = field(surface, "tension_N_per_m"),
+                   .u = dea_field_mesh_find(surface, "displacement_m")->values,
+                   .stretch = dea_field_mesh_find(surface, "plane_stretch")->values,
+                   .tension = dea_field_mesh_find(surface, "tension_N_per_m")->values,
                    .pre_stretch = pre_stretch};
   *columns = NULL;
-  if (w.u == NULL || w.stretch == NULL || w.tension == NULL) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "a profile needs displacement, stretch and tension");
-  }
   for (size_t p = 0; p < surface->point_count; p++) {
     w.close = fmax(w.close, 1e-9 * fmax(fabs(surface->X[3 * p]), fabs(surface->X[3 * p + 1])));
   }

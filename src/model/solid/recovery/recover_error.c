@@ -24,10 +24,7 @@ struct work {
   const struct dea_recover_input *in;
   size_t count, width, nodes; // quantities, numbers of a point, points of an element at most
   double *moved;              // u + z / scale, [nodes][3]
-  size_t group_count;
-  int *group; // [elements] of a ply and a region
-  int *point; // [groups][node_count], counted from 1; 0: none
-  size_t point_count;
+  struct dea_recover_points points;
   double *own;            // [elements][nodes][width] at the Gauss points
   double *excess, *share; // [elements][nodes] J - 1, volume of a Gauss point
   double *value;          // [elements][nodes][width] at the nodes
@@ -57,44 +54,29 @@ static void weigh_corners(struct work *w)
 static dea_status prepare(struct work *w)
 {
   const struct dea_grid *grid = w->in->grid;
-  size_t plies = 1, regions = 1, elements = grid->element_count;
+  const size_t elements = grid->element_count;
+  DEA_TRY(w->ctx, dea_recover_number(&w->memory, grid, &w->points));
   for (size_t e = 0; e < elements; e++) {
-    size_t ply = (size_t)grid->ply[e] + 1, region = (size_t)grid->region[e] + 1;
-    plies = ply > plies ? ply : plies;
-    regions = region > regions ? region : regions;
     size_t nodes = (size_t)dea_grid_nodes_of(grid, e);
     w->nodes = nodes > w->nodes ? nodes : w->nodes;
   }
   size_t most = elements * w->nodes;
-  w->group_count = plies * regions;
   w->width = 2 * TENSOR + (TENSOR + 1) * w->count;
   w->moved = dea_arena_alloc(&w->memory, 3 * grid->node_count, sizeof *w->moved);
-  w->group = dea_arena_alloc(&w->memory, elements, sizeof *w->group);
-  w->point = dea_arena_alloc(&w->memory, w->group_count * grid->node_count, sizeof *w->point);
   w->own = dea_arena_alloc(&w->memory, most * w->width, sizeof *w->own);
   w->excess = dea_arena_alloc(&w->memory, most, sizeof *w->excess);
   w->share = dea_arena_alloc(&w->memory, most, sizeof *w->share);
   w->value = dea_arena_alloc(&w->memory, most * w->width, sizeof *w->value);
-  w->mean = dea_arena_alloc(&w->memory, most * w->width, sizeof *w->mean);
+  w->mean = dea_arena_alloc(&w->memory, w->points.count * w->width, sizeof *w->mean);
   w->second = dea_arena_alloc(&w->memory, elements * SECOND * w->width, sizeof *w->second);
-  w->around_point = dea_arena_alloc(&w->memory, most, sizeof *w->around_point);
+  w->around_point = dea_arena_alloc(&w->memory, w->points.count, sizeof *w->around_point);
   w->around = dea_arena_alloc(&w->memory, w->count * dea_grid_columns(grid), sizeof *w->around);
-  for (size_t e = 0; e < elements && w->group != NULL; e++) {
-    w->group[e] = (int)((size_t)grid->region[e] * plies + (size_t)grid->ply[e]);
-  }
   for (int flat = 0; flat < 2; flat++) {
     dea_fit_create(grid->order, flat ? 0 : grid->order_z, &w->to_nodes[flat]);
     dea_fit_create_back(grid->order, flat ? 0 : grid->order_z, &w->back[flat]);
   }
   weigh_corners(w);
   return dea_arena_status(&w->memory);
-}
-
-static int *point_of(const struct work *w, size_t e, int n)
-{
-  const struct dea_grid *grid = w->in->grid;
-  return &w->point[(size_t)w->group[e] * grid->node_count +
-                   (size_t)grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]];
 }
 
 /* The numbers of a Gauss point of an element, from the one at `at` on. */
@@ -232,9 +214,7 @@ static void get_means(struct work *w)
   const struct dea_grid *grid = w->in->grid;
   for (size_t e = 0; e < grid->element_count; e++) {
     for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
-      int *point = point_of(w, e, n);
-      *point = *point == 0 ? (int)++w->point_count : *point;
-      size_t p = (size_t)*point - 1;
+      const size_t p = dea_recover_point(&w->points, grid, e, n);
       double *value = w->value + (e * w->nodes + (size_t)n) * w->width;
       add_second(w, e, n, value);
       w->around_point[p]++;
@@ -243,7 +223,7 @@ static void get_means(struct work *w)
       }
     }
   }
-  for (size_t i = 0; i < w->point_count * w->width; i++) {
+  for (size_t i = 0; i < w->points.count * w->width; i++) {
     w->mean[i] /= w->around_point[i / w->width];
   }
 }
@@ -253,7 +233,8 @@ static void get_recovered(const struct work *w, size_t e, double *out)
 {
   double nodes[DEA_HEX_NODES_MAX * WIDTH_MAX];
   for (int n = 0; n < dea_grid_nodes_of(w->in->grid, e); n++) {
-    memcpy(nodes + (size_t)n * w->width, w->mean + ((size_t)*point_of(w, e, n) - 1) * w->width,
+    memcpy(nodes + (size_t)n * w->width,
+           w->mean + dea_recover_point(&w->points, w->in->grid, e, n) * w->width,
            w->width * sizeof *nodes);
   }
   dea_fit_nodes(&w->back[is_flat(w, e)], (int)w->width, nodes, out);
@@ -364,7 +345,7 @@ static dea_status gather(struct work *w, const struct dea_recover_quantity *of,
   }
   if (status == DEA_OK && w->in->grid->order == 2) {
     const struct dea_recover_second second = {.grid = w->in->grid,
-                                              .group = w->group,
+                                              .group = w->points.group,
                                               .mirror = mirror,
                                               .tensors = 2 + w->count,
                                               .scalars = w->count,

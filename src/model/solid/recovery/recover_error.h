@@ -14,8 +14,8 @@ struct dea_recover_probe {
 
 /* A quantity that is linear in u. */
 struct dea_recover_quantity {
-  const double *z; // the answer to the load that has its weights [3 node_count]
-  const struct dea_recover_probe *probes; // where it is read inside of elements
+  double *z;                          // the answer to the load that has its weights [3 node_count]
+  struct dea_recover_probe probes[2]; // where it is read inside of elements
   size_t probe_count;
 };
 

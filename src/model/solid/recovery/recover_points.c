@@ -71,6 +71,52 @@ size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, siz
   return end;
 }
 
+/* ---- points ---- */
+
+static int *number_of(const struct dea_recover_points *points, const struct dea_grid *grid,
+                      size_t e, int n)
+{
+  return &points->number[(size_t)points->group[e] * grid->node_count +
+                         (size_t)grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]];
+}
+
+dea_status dea_recover_number(struct dea_arena *memory, const struct dea_grid *grid,
+                              struct dea_recover_points *out)
+{
+  int plies = 1, regions = 1;
+  size_t elements = grid->element_count, most = 0;
+  for (size_t e = 0; e < elements; e++) {
+    plies = plies > grid->ply[e] ? plies : grid->ply[e] + 1;
+    regions = regions > grid->region[e] ? regions : grid->region[e] + 1;
+    most += (size_t)dea_grid_nodes_of(grid, e);
+  }
+  *out = (struct dea_recover_points){
+      .group = dea_arena_alloc(memory, elements, sizeof *out->group),
+      .number = dea_arena_alloc(memory, (size_t)(plies * regions) * grid->node_count,
+                                sizeof *out->number),
+      .node = dea_arena_alloc(memory, most, sizeof *out->node),
+      .element = dea_arena_alloc(memory, most, sizeof *out->element)};
+  DEA_TRY(memory->ctx, dea_arena_status(memory));
+  for (size_t e = 0; e < elements; e++) {
+    out->group[e] = grid->region[e] * plies + grid->ply[e];
+    for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
+      int *number = number_of(out, grid, e, n);
+      if (*number == 0) {
+        out->node[out->count] = grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
+        out->element[out->count] = e;
+        *number = (int)++out->count;
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+size_t dea_recover_point(const struct dea_recover_points *points, const struct dea_grid *grid,
+                         size_t element, int n)
+{
+  return (size_t)*number_of(points, grid, element, n) - 1;
+}
+
 /* ---- elements ---- */
 
 /* What an element is asked with. */
@@ -102,13 +148,16 @@ static void select_element(const struct dea_recover_input *in, size_t e, struct 
   };
 }
 
-dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
-                               struct dea_recovered *out)
+dea_status dea_recover_element(struct dea_context *ctx, const struct dea_recover_input *in,
+                               size_t e, struct dea_recovered *out)
 {
   const struct dea_element *element = &in->elements->of[in->kind[e]];
   struct asked asked;
   select_element(in, e, &asked);
-  return element->type->recover(element, &asked.in, out);
+  const dea_status status = element->type->recover(element, &asked.in, out);
+  return status == DEA_OK
+             ? DEA_OK
+             : dea_fail(ctx, status, "element %zu is inverted or beyond its law's domain", e);
 }
 
 dea_status dea_recover_state(const struct dea_recover_input *in, size_t e, bool stress,

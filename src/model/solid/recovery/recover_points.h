@@ -16,9 +16,25 @@ struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_
 size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, size_t from,
                               bool by_ply);
 
+/* One point for each node in each group, which is a ply in a region, numbered in the order of the
+ * elements. */
+struct dea_recover_points {
+  size_t count;
+  int *group;      // [elements]
+  int *number;     // [groups][node_count] one more than that of the point; 0: none
+  int *node;       // [count] of a point
+  size_t *element; // [count] one that has it
+};
+/* memory: of the arrays. */
+dea_status dea_recover_number(struct dea_arena *memory, const struct dea_grid *grid,
+                              struct dea_recover_points *out);
+/* That of node n of an element. */
+size_t dea_recover_point(const struct dea_recover_points *points, const struct dea_grid *grid,
+                         size_t element, int n);
+
 /* One element of any kind. */
-dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
-                               struct dea_recovered *out);
+dea_status dea_recover_element(struct dea_context *ctx, const struct dea_recover_input *in,
+                               size_t element, struct dea_recovered *out);
 /* The same at its Gauss points; stress: false leaves P untouched. */
 dea_status dea_recover_state(const struct dea_recover_input *in, size_t e, bool stress,
                              struct dea_element_state *out);

@@ -114,27 +114,18 @@ static const double *mirror_of(const struct work *w, size_t e, int axis, int end
   return in_it && hypot(n[0], n[1]) > 0.5 ? n : NULL;
 }
 
-/* out = R v R, the tensor beyond the mirror plane of normal n. */
+/* out = R v R, R = 1 - 2 n n^T: the tensor beyond the mirror plane of normal n. */
 static void reflect(const double n[3], const double v[TENSOR], double out[TENSOR])
 {
-  double R[TENSOR], half[TENSOR] = {0};
+  double nv[3] = {0}, vn[3] = {0}, nvn = 0;
   for (int i = 0; i < TENSOR; i++) {
-    R[i] = (i % 4 == 0 ? 1 : 0) - 2 * n[i / 3] * n[i % 3];
-    out[i] = 0;
+    nv[i % 3] += n[i / 3] * v[i];
+    vn[i / 3] += v[i] * n[i % 3];
+    nvn += n[i / 3] * v[i] * n[i % 3];
   }
-  for (int i = 0; i < 3; i++) {
-    for (int k = 0; k < 3; k++) {
-      for (int j = 0; j < 3; j++) {
-        half[3 * i + j] += R[3 * i + k] * v[3 * k + j];
-      }
-    }
-  }
-  for (int i = 0; i < 3; i++) {
-    for (int k = 0; k < 3; k++) {
-      for (int j = 0; j < 3; j++) {
-        out[3 * i + j] += half[3 * i + k] * R[3 * k + j];
-      }
-    }
+  for (int i = 0; i < TENSOR; i++) {
+    out[i] =
+        v[i] - 2 * (n[i / 3] * nv[i % 3] + vn[i / 3] * n[i % 3]) + 4 * nvn * n[i / 3] * n[i % 3];
   }
 }
 

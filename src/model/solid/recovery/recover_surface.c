@@ -94,10 +94,7 @@ static void add_level(struct work *w, size_t element, double z, const int *point
 /* Membrane forces of one element, which is in w->at after it, added to those of its column. */
 static dea_status add_force(struct work *w, size_t element, double (*force)[6])
 {
-  dea_status status = dea_recover_element(w->in, element, w->at);
-  if (status != DEA_OK) {
-    return dea_fail(w->ctx, status, "element %zu is inverted or beyond its law's domain", element);
-  }
+  DEA_TRY(w->ctx, dea_recover_element(w->ctx, w->in, element, w->at));
   for (int i = 0; i < 6 * w->at->plane_nodes; i++) {
     force[i / 6][i % 6] += w->at->force[i / 6][i % 6];
   }

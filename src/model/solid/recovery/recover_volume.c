@@ -7,80 +7,32 @@
 
 enum { SUMS = 23, FORCE = 17 }; // F 9, stress 6, energy, field, membrane force 6
 
-/* Points while sums are taken. A group is a ply in a region. */
+/* Points while sums are taken. */
 struct work {
   struct dea_context *ctx;
   struct dea_arena memory; // of all arrays but the stack
   const struct dea_recover_input *in;
   struct dea_stacked *stack;
-  int ply_count, region_count;
-  size_t point_count;
-  int *point;      // of a group's node, [groups][node_count], counted from 1; 0: none
-  int *node;       // of a point
-  size_t *element; // one that has the point
+  struct dea_recover_points points;
+  struct dea_recovered *at;
   double (*sum)[SUMS];
   double *weight; // of a point
   double *volume; // of an element [m^3]
   double *error;  // of an element: largest |J - 1|
 };
 
-static int *points_of(const struct work *w, size_t element)
-{
-  const struct dea_grid *grid = w->in->grid;
-  size_t group = (size_t)(grid->ply[element] * w->region_count + grid->region[element]);
-  return w->point + group * grid->node_count;
-}
-
-static int point_of(const struct work *w, size_t element, int node)
-{
-  int at = w->in->grid->nodes[element * DEA_HEX_NODES_MAX + (size_t)node];
-  return points_of(w, element)[at] - 1;
-}
-
-/* Numbers the points in the order of the elements. */
-static dea_status number_points(struct work *w)
-{
-  const struct dea_grid *grid = w->in->grid;
-  for (size_t e = 0; e < grid->element_count; e++) {
-    w->ply_count = w->ply_count > grid->ply[e] ? w->ply_count : grid->ply[e] + 1;
-    w->region_count = w->region_count > grid->region[e] ? w->region_count : grid->region[e] + 1;
-  }
-  size_t groups = (size_t)(w->ply_count * w->region_count), per = DEA_HEX_NODES_MAX;
-  w->point = dea_arena_alloc(&w->memory, groups * grid->node_count, sizeof *w->point);
-  w->node = dea_arena_alloc(&w->memory, grid->element_count * per, sizeof *w->node);
-  w->element = dea_arena_alloc(&w->memory, grid->element_count * per, sizeof *w->element);
-  DEA_TRY(w->ctx, dea_arena_status(&w->memory));
-  for (size_t e = 0; e < grid->element_count; e++) {
-    int *points = points_of(w, e);
-    for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
-      int node = grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n];
-      if (points[node] == 0) {
-        w->node[w->point_count] = node;
-        w->element[w->point_count] = e;
-        points[node] = (int)++w->point_count;
-      }
-    }
-  }
-  return DEA_OK;
-}
-
 /* Takes the elements of one ply in one column; their membrane forces add up. */
 static dea_status add_column(struct work *w, size_t from, size_t end)
 {
   double force[DEA_ELEMENT_LEVEL_MAX][6] = {{0}};
-  struct dea_recovered *at = dea_alloc(w->ctx, 1, sizeof *at);
-  DEA_TRY_MEMORY(at != NULL);
+  struct dea_recovered *at = w->at;
   for (size_t k = from; k < end; k++) {
     size_t e = w->stack[k].element;
-    dea_status status = dea_recover_element(w->in, e, at);
-    if (status != DEA_OK) {
-      dea_free(w->ctx, at);
-      return dea_fail(w->ctx, status, "element %zu is inverted or beyond its law's domain", e);
-    }
+    DEA_TRY(w->ctx, dea_recover_element(w->ctx, w->in, e, at));
     w->volume[e] = at->volume_m3;
     w->error[e] = at->volume_error;
     for (int n = 0; n < at->nodes; n++) {
-      int p = point_of(w, e, n);
+      const size_t p = dea_recover_point(&w->points, w->in->grid, e, n);
       w->weight[p] += at->volume_m3;
       for (int i = 0; i < 9; i++) {
         w->sum[p][i] += at->volume_m3 * at->F[n][i];
@@ -100,22 +52,23 @@ static dea_status add_column(struct work *w, size_t from, size_t end)
   for (size_t k = from; k < end; k++) {
     size_t e = w->stack[k].element;
     for (int n = 0; n < at->nodes; n++) {
-      int p = point_of(w, e, n);
+      const size_t p = dea_recover_point(&w->points, w->in->grid, e, n);
       for (int i = 0; i < 6; i++) {
         w->sum[p][FORCE + i] += w->volume[e] * force[n % at->plane_nodes][i];
       }
     }
   }
-  dea_free(w->ctx, at);
   return DEA_OK;
 }
 
 static dea_status get_means(struct work *w)
 {
   size_t count = w->in->grid->element_count;
+  DEA_TRY(w->ctx, dea_recover_number(&w->memory, w->in->grid, &w->points));
   w->stack = dea_recover_stack(w->ctx, w->in);
-  w->sum = dea_arena_alloc(&w->memory, w->point_count, sizeof *w->sum);
-  w->weight = dea_arena_alloc(&w->memory, w->point_count, sizeof *w->weight);
+  w->at = dea_arena_alloc(&w->memory, 1, sizeof *w->at);
+  w->sum = dea_arena_alloc(&w->memory, w->points.count, sizeof *w->sum);
+  w->weight = dea_arena_alloc(&w->memory, w->points.count, sizeof *w->weight);
   w->volume = dea_arena_alloc(&w->memory, count, sizeof *w->volume);
   w->error = dea_arena_alloc(&w->memory, count, sizeof *w->error);
   DEA_TRY(w->ctx, w->stack != NULL ? dea_arena_status(&w->memory) : DEA_E_MEMORY);
@@ -124,7 +77,7 @@ static dea_status get_means(struct work *w)
     DEA_TRY(w->ctx, add_column(w, from, end));
     from = end;
   }
-  for (size_t p = 0; p < w->point_count; p++) {
+  for (size_t p = 0; p < w->points.count; p++) {
     for (int i = 0; i < SUMS; i++) {
       w->sum[p][i] /= w->weight[p];
     }
@@ -215,12 +168,12 @@ static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mes
 static void fill_point(const struct work *w, size_t p, const struct fields *to)
 {
   const struct dea_recover_input *in = w->in;
-  size_t e = w->element[p];
+  size_t e = w->points.element[p];
   const struct dea_part_material *part_material = &in->part_materials[in->part_material[e]];
   const double *sum = w->sum[p];
   struct dea_plane_state plane;
   double axis[3][3];
-  memcpy(to->displacement + 3 * p, in->u + 3 * w->node[p], 3 * sizeof(double));
+  memcpy(to->displacement + 3 * p, in->u + 3 * w->points.node[p], 3 * sizeof(double));
   principal_stretch(part_material, sum, to->stretch + 3 * p);
   principal(sum + 9, to->stress + 3 * p, axis);
   for (int k = 0; k < 3; k++) {
@@ -248,7 +201,7 @@ static dea_status add_block(struct work *w, struct dea_field_mesh *mesh, int lev
   DEA_TRY(w->ctx, dea_field_mesh_add_block(w->ctx, mesh, grid->order, levels - 1, count, &nodes));
   for (size_t e = 0; e < grid->element_count; e++) {
     for (int n = 0; n < dea_grid_nodes_of(grid, e) && grid->levels[e] == levels; n++) {
-      *nodes++ = point_of(w, e, n);
+      *nodes++ = (int)dea_recover_point(&w->points, grid, e, n);
     }
   }
   return DEA_OK;
@@ -271,8 +224,8 @@ static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
       }
     }
   }
-  for (size_t p = 0; p < w->point_count; p++) {
-    memcpy(mesh->X + 3 * p, grid->X + 3 * w->node[p], 3 * sizeof(double));
+  for (size_t p = 0; p < w->points.count; p++) {
+    memcpy(mesh->X + 3 * p, grid->X + 3 * w->points.node[p], 3 * sizeof(double));
     fill_point(w, p, &to);
   }
   return DEA_OK;
@@ -283,9 +236,8 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
 {
   struct work work = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in};
   *out = NULL;
-  dea_status status = number_points(&work);
-  status = status == DEA_OK ? get_means(&work) : status;
-  status = status == DEA_OK ? dea_field_mesh_create(ctx, work.point_count, out) : status;
+  dea_status status = get_means(&work);
+  status = status == DEA_OK ? dea_field_mesh_create(ctx, work.points.count, out) : status;
   status = status == DEA_OK ? fill_mesh(&work, *out) : status;
   dea_free(ctx, work.stack);
   dea_arena_free(&work.memory);
