@@ -28,7 +28,7 @@ static double time_of(struct dea_context *ctx, struct dea_design_gradient *ask, 
   static double slopes[DEA_NUMBERS_MAX * QUANTITIES];
   double best = INFINITY;
   ask->number_count = numbers;
-  ask->column_count = quantities;
+  ask->of.column_count = quantities;
   for (int i = 0; i < repeats; i++) {
     double start = bench_processor_s();
     bench_need(dea_design_gradient_find(ctx, ask, slopes), ctx);
@@ -61,10 +61,10 @@ static double step_of(struct dea_context *ctx, const struct dea_device *device,
 static double time_of_one(struct dea_context *ctx, struct dea_design_gradient *ask, const char *key,
                           size_t numbers)
 {
-  const int column = dea_point_column_find(key), *columns = ask->columns;
-  ask->columns = &column;
+  const int column = dea_point_column_find(key), *columns = ask->of.columns;
+  ask->of.columns = &column;
   const double out = time_of(ctx, ask, numbers, 1);
-  ask->columns = columns;
+  ask->of.columns = columns;
   return out;
 }
 
@@ -88,7 +88,7 @@ static void measure(struct dea_context *ctx, const struct dea_design *design,
                                     .device = device,
                                     .voltage_V = 1e3 * KV,
                                     .numbers = numbers,
-                                    .columns = columns};
+                                    .of.columns = columns};
   double shared = time_of(ctx, &ask, 0, 0), all = time_of(ctx, &ask, 0, QUANTITIES),
          whole = time_of(ctx, &ask, count, QUANTITIES),
          mode = time_of_one(ctx, &ask, "frequency_Hz", 0),

@@ -258,7 +258,7 @@ static void make_thinner(void)
 static double charge_C(struct cone *it)
 {
   double charge[2];
-  verify_ok(ctx, dea_solid_charges(ctx, it->solid, charge));
+  verify_ok(ctx, dea_solid_flows(ctx, it->solid, NULL, charge, NULL));
   return 4 * charge[1];
 }
 

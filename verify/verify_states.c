@@ -28,7 +28,8 @@ static struct found find(const struct dea_override *sets, size_t count)
                                  &found.design));
   verify_ok(ctx, dea_device_build(ctx, found.design, &found.device));
   verify_ok(ctx, dea_result_create(ctx, found.design, found.device, &found.result));
-  verify_ok(ctx, dea_study_states.run(ctx, &dea_solid_module, NULL, found.result));
+  verify_ok(ctx, dea_study_states.run(ctx, &(struct dea_study_job){.type = &dea_solid_module,
+                                                                   .result = found.result}));
   found.table = dea_result_find_table(found.result, "3d", "states", "found");
   return found;
 }

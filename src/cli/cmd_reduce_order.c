@@ -48,26 +48,16 @@ static void print_order(const struct request *request, const struct dea_reduced_
 static dea_status write_files(struct dea_context *ctx, const struct request *request,
                               const struct dea_reduced_order *o, const struct dea_device *device)
 {
-  const double bias_V = request->bias_V, damping = request->damping;
   if (request->output != NULL) {
     DEA_TRY(ctx, dea_reduced_order_write(ctx, o, device, request->output));
   }
-  if (request->c != NULL) {
-    DEA_TRY(ctx, dea_reduced_order_write_c(ctx, o, device, request->c));
+  for (int k = 0; k < DEA_REDUCED_FORMATS; k++) {
+    if (request->files[k] != NULL) {
+      DEA_TRY(ctx, dea_reduced_order_export(ctx, o, device, (enum dea_reduced_format)k,
+                                            request->bias_V, request->damping, request->files[k]));
+    }
   }
-  if (request->fmu != NULL) {
-    DEA_TRY(ctx, dea_reduced_order_write_fmu(ctx, o, device, request->fmu));
-  }
-  if (request->state_space != NULL) {
-    DEA_TRY(ctx,
-            dea_reduced_order_write_state_space(ctx, o, bias_V, damping, request->state_space));
-  }
-  if (request->spice != NULL) {
-    DEA_TRY(ctx, dea_reduced_order_write_spice(ctx, o, bias_V, damping, request->spice));
-  }
-  return request->mujoco == NULL
-             ? DEA_OK
-             : dea_reduced_order_write_mujoco(ctx, o, device, bias_V, damping, request->mujoco);
+  return DEA_OK;
 }
 
 static dea_status build(struct dea_cli *cli, const void *user, const struct dea_design *design,
