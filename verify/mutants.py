@@ -57,7 +57,7 @@ OWN_TESTS = [
     ("src/explore/slopes.c", "explore_optimise"),
     ("src/explore/", "explore cli_sweep"),
     ("src/studio/", "studio"),
-    ("src/fabricate/dxf.c", "fab fab_drawing geometry_drawing"),
+    ("src/fabricate/dxf_write.c", "fab fab_drawing geometry_drawing"),
     ("src/fabricate/", "fab fab_contour fab_errors fab_layout cli_fab fab_drawing"),
     ("src/study/", "study_compare study_convergence study_force study_loading study_map "
                    "study_states study_transient study_uncertainty study_vibration path "

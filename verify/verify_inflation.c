@@ -255,7 +255,8 @@ static void balloon_rows(double H, size_t count, double end)
       struct dea_continuation_point limit;
       verify_absolute("number of limit points", ++limits, 1, 0);
       verify_ok(ctx, dea_solid_continuation_locate(ctx, trace, &limit));
-      double p = dea_pressure_at_Pa(balloon.pressure, NULL) / H, stretch = balloon_stretch(&balloon);
+      double p = dea_pressure_at_Pa(balloon.pressure, NULL) / H,
+             stretch = balloon_stretch(&balloon);
       printf("| %g | %zu | **%.4f** (1.3831) | **%.5f** | 1.23946 | %+.2f %% | |\n", H,
              balloon.grid->node_count, stretch, p,
              100 * verify_relative("largest pressure", p, 1.239463, 1e-2));

@@ -79,8 +79,8 @@ static void describe_design(struct dea_design_space *space, struct dea_context *
   struct dea_device *device = NULL;
   size_t count;
   dea_finding_clear(ctx);
-  dea_device_params_build(ctx, &space->model.file, space->params, space->variable_count, io->p, &design,
-                          &device);
+  dea_device_params_build(ctx, &space->model.file, space->params, space->variable_count, io->p,
+                          &design, &device);
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   for (size_t i = count; i-- > 0;) { // the first error
     if (findings[i].severity == DEA_ERROR) {
@@ -650,10 +650,7 @@ dea_status dea_design_space_read(struct dea_context *ctx, const char *file,
     status = resolve_file(space);
     dea_c_locale_leave(before);
   }
-  if (status != DEA_OK) {
-    dea_design_space_destroy(space);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_design_space_destroy(space));
   *out = space;
   return DEA_OK;
 }

@@ -1,5 +1,5 @@
-/* What is explored: some numbers in, named quantities out. A device is one (space.h); tests have
- * functions in closed form. */
+/* What is explored: some numbers in, named quantities out. A device is one (design_space.h); tests
+ * have functions in closed form. */
 #pragma once
 
 #include "base/context.h"

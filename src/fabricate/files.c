@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/write_file.h"
 #include "fabricate/cairo_canvas.h"
-#include "fabricate/dxf.h"
+#include "fabricate/dxf_write.h"
 #include "fabricate/pages.h"
 #include "fabricate/picture.h"
 #include "fabricate/process.h"

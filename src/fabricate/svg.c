@@ -1,7 +1,7 @@
 #include "fabricate/svg.h"
 
 #include "base/html.h"
-#include "fabricate/dxf.h"
+#include "fabricate/dxf_write.h"
 
 #include <math.h>
 

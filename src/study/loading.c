@@ -5,7 +5,7 @@
 #include "study/loading.h"
 #include "base/schema.h"
 #include "study/observe.h"
-#include "study/stepper.h"
+#include "study/time_stepper.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -3,8 +3,8 @@
 #include "base/schema.h"
 #include "study/force.h"
 #include "study/observe.h"
-#include "study/stepper.h"
 #include "study/study.h"
+#include "study/time_stepper.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* Files for the workshop, read back: areas, lengths and places against those of the design, by
  * closed forms, for designs drawn at random. */
 // ctest: quick, heavy
-#include "fabricate/dxf.h"
+#include "fabricate/dxf_write.h"
 #include "fabricate/svg.h"
 #include "workshop_fixture.h"
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* What cannot be built is said at its place in the design, and nothing crashes or leaks. */
 // ctest: quick, heavy
 #include "design_text.h"
-#include "fabricate/dxf.h"
+#include "fabricate/dxf_write.h"
 #include "fabricate/svg.h"
 #include "failing_allocator.h"
 

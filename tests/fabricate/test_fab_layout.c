@@ -2,7 +2,7 @@
  * are cut, and what cannot be cut. */
 #include "workshop_fixture.h"
 
-#include "fabricate/dxf.h"
+#include "fabricate/dxf_write.h"
 #include "fabricate/layout_parts.h"
 #include "fabricate/process.h"
 #include "geometry/drawing.h"

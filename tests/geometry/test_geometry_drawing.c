@@ -1,6 +1,6 @@
 /* Drawings from DXF and SVG files: areas against closed forms and against the project's own writer,
  * what is said of what is not read, and faults with their place. */
-#include "fabricate/dxf.h"
+#include "fabricate/dxf_write.h"
 #include "failing_allocator.h"
 #include "geometry/drawing.h"
 #include "workshop_fixture.h"

@@ -170,10 +170,7 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
   *out = (struct dea_drive_report){.largest_current_A = NAN, .zero.volts = NAN};
   DEA_TRY(ctx, dea_protocol_check(ctx, protocol, &plan));
   dea_status status = options->simulate ? DEA_OK : arm(ctx, protocol, options, &armed);
-  if (status != DEA_OK) {
-    dea_supply_close(&armed.supply);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_supply_close(&armed.supply));
   status = run(ctx, protocol, &plan, options, &armed, out);
   dea_status disarmed = disarm(ctx, &armed, out->zero);
   status = status != DEA_OK ? status : disarmed;

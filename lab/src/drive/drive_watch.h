@@ -3,7 +3,7 @@
 
 #include "drive/arc_watch.h"
 #include "drive/leak_watch.h"
-#include "instrument/evidence.h"
+#include "instrument/voltage_evidence.h"
 #include "protocol/protocol.h"
 #include "recording/recording.h"
 

@@ -42,10 +42,7 @@ static dea_status read(struct dea_context *ctx, const char *file, const char *te
   DEA_TRY_MEMORY(film != NULL);
   film->base.type = &dea_film_of_design;
   dea_status status = dea_design_read_memory(ctx, file, text, length, NULL, 0, &film->design);
-  if (status != DEA_OK) {
-    destroy(ctx, &film->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, destroy(ctx, &film->base));
   *out = &film->base;
   return DEA_OK;
 }
@@ -191,10 +188,7 @@ static dea_status open_model(struct dea_context *ctx, const struct dea_bench_fil
                            .design = ((const struct film *)film)->design,
                            .type = type};
   dea_status status = build(ctx, name != NULL, monitor, m);
-  if (status != DEA_OK) {
-    close_model(ctx, &m->base);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, close_model(ctx, &m->base));
   *out = &m->base;
   return DEA_OK;
 }

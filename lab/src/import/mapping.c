@@ -164,10 +164,7 @@ dea_status dea_mapping_read_memory(struct dea_context *ctx, const char *file, co
   mapping->file = dea_intern(ctx, file);
   dea_status status =
       mapping->file != NULL ? read_bytes(ctx, bytes, length, mapping) : DEA_E_MEMORY;
-  if (status != DEA_OK) {
-    dea_mapping_destroy(ctx, mapping);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_mapping_destroy(ctx, mapping));
   *out = mapping;
   return DEA_OK;
 }

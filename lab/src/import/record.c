@@ -391,10 +391,7 @@ dea_status dea_table_record(struct dea_context *ctx, const struct dea_table *tab
   }
   dea_free(ctx, work.clocks);
   dea_free(ctx, work.roles);
-  if (status != DEA_OK) {
-    dea_recording_destroy(ctx, work.recording);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_recording_destroy(ctx, work.recording));
   *out = work.recording;
   return DEA_OK;
 }

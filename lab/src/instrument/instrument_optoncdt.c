@@ -125,10 +125,7 @@ static dea_status read_bytes(struct optoncdt *o, const unsigned char *bytes, siz
       int number = (o->upper << 7) | bytes[i];
       double behind_s = 0.5 * (double)(length - 1 - i) / o->raw.rate_Hz.si;
       o->upper = -1;
-      dea_status status = add_value(o, number, now_s - behind_s, sink);
-      if (status != DEA_OK) {
-        return status;
-      }
+      DEA_TRY_STATUS(add_value(o, number, now_s - behind_s, sink));
     }
   }
   return DEA_OK;

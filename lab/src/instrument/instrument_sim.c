@@ -353,10 +353,7 @@ static dea_status sample(struct sim *s, double control_V, double *volts,
                          const struct dea_sink *sink)
 {
   struct dea_sim_state state;
-  dea_status status = dea_sim_bench_sample(s->bench, control_V, &state);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_sim_bench_sample(s->bench, control_V, &state));
   read_inputs(s, &state, volts);
   s->base.lost += s->protocol->input_count > 0 && isnan(volts[0]) ? 1 : 0;
   double frame_s = (double)s->frames / s->raw.frame_rate_Hz.si;

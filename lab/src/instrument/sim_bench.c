@@ -240,10 +240,7 @@ dea_status dea_sim_bench_create(struct dea_context *ctx, const struct dea_protoc
   *bench = (struct dea_sim_bench){
       .ctx = ctx, .protocol = protocol, .settings = *settings, .type = protocol->film->type};
   dea_status status = begin(bench);
-  if (status != DEA_OK) {
-    dea_sim_bench_destroy(ctx, bench);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_sim_bench_destroy(ctx, bench));
   *out = bench;
   return DEA_OK;
 }

@@ -8,7 +8,7 @@
 
 #include "base/context.h"
 #include "base/value.h"
-#include "instrument/evidence.h"
+#include "instrument/voltage_evidence.h"
 #include "protocol/protocol.h"
 
 /* What is to be done now. */

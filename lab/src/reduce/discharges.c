@@ -383,10 +383,7 @@ dea_status dea_discharges_find(struct dea_context *ctx, const struct dea_channel
   dea_free(ctx, s.residual);
   dea_free(ctx, s.plateaus);
   *limits = s.limits;
-  if (status != DEA_OK) {
-    dea_free(ctx, s.found);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_free(ctx, s.found));
   if (s.count > 1) {
     qsort(s.found, s.count, sizeof *s.found, by_time);
   }

@@ -611,10 +611,7 @@ dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recor
   dea_status status = reduce(&job, options);
   dea_free(ctx, job.list.parts);
   dea_free(ctx, job.offsets);
-  if (status != DEA_OK) {
-    dea_reduction_destroy(ctx, job.out);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_reduction_destroy(ctx, job.out));
   *out = job.out;
   return DEA_OK;
 }

@@ -167,10 +167,7 @@ dea_status dea_cycle_values(struct dea_context *ctx, const struct dea_channel *s
     status = v.scratch != NULL ? DEA_OK : DEA_E_MEMORY;
   }
   dea_free(ctx, spans);
-  if (status != DEA_OK) {
-    dea_free(ctx, v.scratch);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_free(ctx, v.scratch));
   v.rest = isnan(v.rest.sample) ? v.active : v.rest; // of one when the other is too short
   v.active = isnan(v.active.sample) ? v.rest : v.active;
   *noise = v.rest.sample;

@@ -64,10 +64,7 @@ static dea_status find_extremes(const struct dea_disc *disc, const double *u, do
   for (size_t e = 0; e < disc->element_count; e++) {
     for (size_t j = 0; j <= disc->element[e].order; j++) {
       struct sample at;
-      dea_status status = sample(disc, u, voltage_V, e, disc->element[e].node_R[j], &at);
-      if (status != DEA_OK) {
-        return status;
-      }
+      DEA_TRY_STATUS(sample(disc, u, voltage_V, e, disc->element[e].node_R[j], &at));
       out->min_tension_N_per_m =
           fmin(out->min_tension_N_per_m, fmin(at.tension_r_N_per_m, at.tension_t_N_per_m));
       dea_reach_merge(&reach, dea_material_reach(disc->film.material, at.stretch_r, at.stretch_t));

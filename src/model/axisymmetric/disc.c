@@ -144,10 +144,7 @@ static dea_status gauss_point(const struct dea_disc *disc, const struct dea_disc
   double l_pre = disc->pre_stretch, H0 = disc->film.thickness_m, l_r, l_t;
   gauss_stretch(disc, element, q, local, &l_r, &l_t);
   struct dea_plane plane, unit = {0};
-  dea_status status = dea_film_eval(&disc->film, element->active, voltage_V / H0, l_r, l_t, &plane);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_film_eval(&disc->film, element->active, voltage_V / H0, l_r, l_t, &plane));
   if (element->active) {
     dea_plane_electric(disc->film.material, 1, l_r, l_t, &unit);
   }
@@ -200,10 +197,7 @@ dea_status dea_disc_evaluate(const struct dea_disc *disc, const double *u, doubl
     double local[DEA_DISC_ORDER_MAX + 1];
     gather(disc, u, element, local);
     for (size_t q = 0; q < element->gauss_count; q++) {
-      dea_status status = gauss_point(disc, element, q, local, voltage_V, &sums);
-      if (status != DEA_OK) {
-        return status;
-      }
+      DEA_TRY_STATUS(gauss_point(disc, element, q, local, voltage_V, &sums));
     }
     scatter(disc, element, &sums, scale, g, K, gV);
   }
@@ -247,11 +241,7 @@ dea_status dea_disc_totals(const struct dea_disc *disc, const double *u, double 
       double l_r, l_t, weight = element->weight[q];
       struct dea_plane plane;
       gauss_stretch(disc, element, q, local, &l_r, &l_t);
-      dea_status status =
-          dea_film_eval(&disc->film, element->active, voltage_V / H0, l_r, l_t, &plane);
-      if (status != DEA_OK) {
-        return status;
-      }
+      DEA_TRY_STATUS(dea_film_eval(&disc->film, element->active, voltage_V / H0, l_r, l_t, &plane));
       *energy += scale * weight * plane.W;
       if (element->active) {
         *capacitance_F += dea_film_capacitance(&disc->film, 2 * pi * h * weight, l_r, l_t);

@@ -35,10 +35,7 @@ dea_status dea_lift_force(const struct dea_lumped *lumped, const struct dea_lift
   double l_a = 1 + L_f * (1 - cosine) / lift->tip_per_stretch_m;
   double dl_a = height_m / (L_f * cosine) / lift->tip_per_stretch_m; // d l_a/dz = tan(a)/(dr/dl_a)
   struct dea_lumped_balance balance;
-  dea_status status = dea_lumped_balance_eval(lumped, l_a, nominal_field_V_per_m, &balance);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_lumped_balance_eval(lumped, l_a, nominal_field_V_per_m, &balance));
   // dPi/dl_a = 2 l_pre (s_A - s_P) times the unstretched volume pi r_a^2 h
   double l_pre = lumped->pre_stretch;
   double volume = pi * r_a * r_a * lumped->film.thickness_m / (l_pre * l_pre);

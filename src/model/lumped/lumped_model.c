@@ -67,10 +67,7 @@ static dea_status fill_point(const struct dea_model *model, const struct dea_lum
   const struct dea_film *film = &lumped->film;
   double field = voltage_V / film->thickness_m, l_pre = lumped->pre_stretch;
   struct dea_lumped_balance balance;
-  dea_status status = dea_lumped_balance_eval(lumped, l_a, field, &balance);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_lumped_balance_eval(lumped, l_a, field, &balance));
   double l_A = l_a * l_pre, l_P = balance.passive_stretch * l_pre;
   *out = dea_load_point_empty();
   out->voltage_V = voltage_V;

@@ -52,10 +52,7 @@ static dea_status evaluate(const struct dea_lumped *lumped, const struct dea_lum
   }
   out->voltage_V = dea_circuit_voltage(&motion->options.circuit, circuit, step, &out->film, &dV);
   struct dea_lumped_balance balance;
-  dea_status status = dea_lumped_balance_eval(lumped, l, out->voltage_V / H0, &balance);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_lumped_balance_eval(lumped, l, out->voltage_V / H0, &balance));
   out->imbalance_Pa = balance.imbalance_Pa;
   out->slope_Pa = balance.slope_Pa + balance.slope_field_Pa_m_per_V * dV / H0;
   out->energy_Pa = balance.energy_Pa - balance.branch_energy_Pa;
@@ -74,10 +71,7 @@ struct equation {
 static dea_status residual(const struct equation *e, double l, struct evaluation *at, double *r,
                            double *slope)
 {
-  dea_status status = evaluate(e->lumped, e->motion, e->circuit, e->step, l, at);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(evaluate(e->lumped, e->motion, e->circuit, e->step, l, at));
   *r = e->inertia_Pa * (l - e->start) + e->weight * at->imbalance_Pa + e->known_Pa;
   *slope = e->inertia_Pa + e->weight * at->slope_Pa;
   return DEA_OK;

@@ -331,10 +331,7 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
   memcpy(c->now, options->place_m, sizeof c->now);
   memcpy(c->goal, options->place_m, sizeof c->goal);
   const dea_status status = prepare(ctx, c);
-  if (status != DEA_OK) {
-    dea_contact_destroy(ctx, c);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_contact_destroy(ctx, c));
   *out = c;
   return DEA_OK;
 }

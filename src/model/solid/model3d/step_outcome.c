@@ -266,11 +266,8 @@ static dea_status approach(struct dea_context *ctx, struct dea_step_outcome *e, 
   DEA_TRY(ctx, check_tension(ctx, e));
   e->from_area = e->area;
   const bool taut = is_taut(e);
-  dea_status status =
-      dea_solid_solve_incremental(ctx, e->model->solid, voltage_V, taut, &watch, report, stop);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(
+      dea_solid_solve_incremental(ctx, e->model->solid, voltage_V, taut, &watch, report, stop));
   *passed = e->limited && e->limit.kind != DEA_EVENT_SLACK && taut && report->snapped;
   if (*passed && !e->has_passed) {
     e->passed = e->limit;

@@ -36,7 +36,7 @@ struct dea_part_material {
   double thickness_m;       // of all layers together
   double layers;            // over each of which the voltage stands; 0: 1
   double density_kg_per_m3; // 0 for a part without mass
-  bool relaxed;             // flat elements wrinkle instead of taking pressure (tension.h)
+  bool relaxed;             // flat elements wrinkle instead of taking pressure (tension_field.h)
   /* Of a step in time (viscous.h): B [points of the element][6], lent, NULL: none; and b. */
   const double *viscous;
   double viscous_Pa;

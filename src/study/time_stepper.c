@@ -1,4 +1,4 @@
-#include "study/stepper.h"
+#include "study/time_stepper.h"
 
 #include <math.h>
 

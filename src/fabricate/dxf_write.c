@@ -2,7 +2,7 @@
  * TABLES, BLOCKS, ENTITIES and OBJECTS, of which readers ask for the least that is legal. Handles
  * are hexadecimal numbers; 1 to 0x2f are used by tables and blocks: tables from 1, block records A
  * and B, their blocks C to F, dictionaries 10 and 11, entries of tables from 12. */
-#include "fabricate/dxf.h"
+#include "fabricate/dxf_write.h"
 
 #include "base/file.h"
 #include "base/version.h"

@@ -1,4 +1,4 @@
-#include "instrument/evidence.h"
+#include "instrument/voltage_evidence.h"
 
 #include "instrument/output_zero.h"
 
