@@ -38,6 +38,9 @@ struct dea_step_outcome {
   bool grew;                       // the film has at once, on the last step
   double tension[3], tension_V[3]; // smallest of the film [N/m], at the last points looked at
   double area;                     // largest area stretch at the last of them
+  struct dea_solid_extremes film;  // of the films where they were evaluated last
+  double *film_at[2]; // there and where the solid is: displacements, voltages; NULL: nowhere yet
+  struct dea_arena memory; // of these
 };
 
 /* Where the solid is: its last equilibrium, and the way to the next one. */

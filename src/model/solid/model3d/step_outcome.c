@@ -33,12 +33,34 @@ static double least_tension(const struct dea_step_outcome *e)
                        e->model->layout->plies[plies->film].thickness_m);
 }
 
-static dea_status evaluate_film(struct dea_context *ctx, const struct dea_step_outcome *e,
-                                struct dea_solid_extremes *out)
+/* Evaluates the films where the solid is, once: it is looked at where a load step ends and where
+ * the next one begins. */
+static dea_status evaluate_film(struct dea_context *ctx, struct dea_step_outcome *e)
 {
-  const dea_status status = dea_solid_extremes(e->model->solid, e->model->plies.films, out);
-  return status == DEA_OK ? DEA_OK
-                          : dea_fail(ctx, status, "the film cannot be evaluated on the way");
+  struct dea_solid *s = e->model->solid;
+  struct dea_solid_extremes film;
+  const size_t dofs = s->problem.dofs, count = dofs + s->problem.channel_count + 1;
+  const bool first = e->film_at[0] == NULL;
+  e->memory.ctx = ctx;
+  for (int i = 0; i < 2 && first; i++) {
+    e->film_at[i] = dea_arena_alloc(&e->memory, count, sizeof *e->film_at[i]);
+  }
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&e->memory)));
+  double *now = e->film_at[1];
+  e->film_at[0][0] = first ? NAN : e->film_at[0][0];
+  memcpy(now, s->state.u, dofs * sizeof *now);
+  dea_solid_channel_voltages(s, now + dofs);
+  if (memcmp(now, e->film_at[0], count * sizeof *now) == 0) {
+    return DEA_OK;
+  }
+  dea_status status = dea_solid_extremes(s, e->model->plies.films, &film);
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film cannot be evaluated on the way");
+  }
+  e->film = film;
+  e->film_at[1] = e->film_at[0];
+  e->film_at[0] = now;
+  return DEA_OK;
 }
 
 /* Keeps the smallest tension where the solid is, which tells where the film goes slack, and its
@@ -46,14 +68,13 @@ static dea_status evaluate_film(struct dea_context *ctx, const struct dea_step_o
 static dea_status check_tension(struct dea_context *ctx, struct dea_step_outcome *e)
 {
   double V = dea_solid_voltage(e->model->solid);
-  struct dea_solid_extremes film;
-  DEA_TRY(ctx, evaluate_film(ctx, e, &film));
-  e->area = film.area;
+  DEA_TRY(ctx, evaluate_film(ctx, e));
+  e->area = e->film.area;
   for (int i = 0; i < 2 && V != e->tension_V[2]; i++) {
     e->tension[i] = e->tension[i + 1];
     e->tension_V[i] = e->tension_V[i + 1];
   }
-  e->tension[2] = film.min_tension_N_per_m;
+  e->tension[2] = e->film.min_tension_N_per_m;
   e->tension_V[2] = V;
   return DEA_OK;
 }
@@ -75,10 +96,17 @@ static dea_status get_event(struct dea_context *ctx, struct dea_step_outcome *e,
   return status;
 }
 
-void dea_step_outcome_free(struct dea_step_outcome *e)
+static void drop_limit(struct dea_step_outcome *e)
 {
   dea_solid_saved_state_free(&e->at_limit);
   e->at_limit = (struct dea_solid_saved_state){.state = NULL};
+}
+
+void dea_step_outcome_free(struct dea_step_outcome *e)
+{
+  drop_limit(e);
+  dea_arena_free(&e->memory);
+  e->film_at[0] = e->film_at[1] = NULL;
 }
 
 /* The voltage at which two points that were looked at after each other have the tension 0 on the
@@ -113,7 +141,7 @@ static dea_status observe_point(struct dea_context *ctx, void *user, enum dea_so
   bool before = is_taut(e);
   bool thins = before || e->grew; // where it turns unstable: in one place
   if (where == DEA_STOP_LIMIT && !e->has_passed) {
-    dea_step_outcome_free(e);
+    drop_limit(e);
     DEA_TRY(ctx, dea_solid_save_state(ctx, e->model->solid, &e->at_limit));
   }
   if (where == DEA_STOP_PASSED) {
@@ -147,11 +175,10 @@ static dea_status observe_point(struct dea_context *ctx, void *user, enum dea_so
 static dea_status observe_change(struct dea_context *ctx, void *user, struct dea_solid_change *out)
 {
   struct dea_step_outcome *e = user;
-  struct dea_solid_extremes film;
-  DEA_TRY(ctx, evaluate_film(ctx, e, &film));
-  out->grew = film.area > branch_jump * fmax(e->area, 1);
+  DEA_TRY(ctx, evaluate_film(ctx, e));
+  out->grew = e->film.area > branch_jump * fmax(e->area, 1);
   e->grew |= out->grew;
-  out->taut = film.min_tension_N_per_m > least_tension(e);
+  out->taut = e->film.min_tension_N_per_m > least_tension(e);
   return DEA_OK;
 }
 
@@ -274,7 +301,7 @@ static dea_status approach(struct dea_context *ctx, struct dea_step_outcome *e, 
     e->has_passed = true;
   }
   if (!e->has_passed) {
-    dea_step_outcome_free(e);
+    drop_limit(e);
   }
   e->limited = false;
   return check_tension(ctx, e);
@@ -307,7 +334,7 @@ dea_status dea_step_outcome_move(struct dea_context *ctx, struct dea_step_outcom
   struct dea_solid_stop stop = {.load_factor = NAN};
   bool passed;
   e->has_passed = false;
-  dea_step_outcome_free(e);
+  drop_limit(e);
   dea_status status = approach(ctx, e, dea_solid_voltage(e->model->solid), report, &stop, &passed);
   *fraction = passed || status == DEA_E_NO_EQUILIBRIUM ? stop.load_factor : NAN;
   return status;
@@ -330,7 +357,7 @@ dea_status dea_step_outcome_go(struct dea_context *ctx, struct dea_step_outcome 
   int steps =
       isfinite(step_V) ? dea_whole(ceil(fabs(distance_V) / step_V - 1e-9), 1, INT_MAX - 1) : 1;
   e->limited = e->has_passed = false;
-  dea_step_outcome_free(e);
+  drop_limit(e);
   for (int i = 1; i <= steps; i++) {
     if (dea_interrupted_anywhere(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
