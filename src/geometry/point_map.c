@@ -63,8 +63,8 @@ static void grow(struct dea_point_map *map)
   map->next = next != NULL ? next : map->next;
   size_t *head = dea_resize(map->ctx, map->head, capacity, sizeof *head);
   map->head = head != NULL ? head : map->head;
-  map->failed = point == NULL || next == NULL || head == NULL;
-  if (map->failed) {
+  if (point == NULL || next == NULL || head == NULL) {
+    map->failed = true;
     return;
   }
   map->capacity = map->heads = capacity;
@@ -82,7 +82,7 @@ size_t dea_point_map_add(struct dea_point_map *map, const double x_m[2])
   if (index != SIZE_MAX) {
     return index;
   }
-  if (map->count == map->capacity) {
+  if (map->count == map->capacity && !map->failed) {
     grow(map);
   }
   if (map->failed) {

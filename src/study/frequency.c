@@ -479,8 +479,8 @@ static dea_status add_bias(struct dea_context *ctx, const struct dea_curve *curv
   common_axis(ctx, curve, &largest);
   while (find_mover(ctx, curve, from, 3, &m)) {
     char moves[DEA_NAME_SIZE + 8];
-    snprintf(moves, sizeof moves, "%.60s%s%.1s", m.name, m.monitor ? ", " : "",
-             m.monitor ? &"xyz"[m.axis] : "");
+    snprintf(moves, sizeof moves, "%.60s%s%c", m.name, m.monitor ? ", " : "",
+             m.monitor ? "xyz"[m.axis] : '\0');
     if (!m.monitor || largest_of(&m.line) > least_share * largest) {
       DEA_TRY(ctx, add_peaks(ctx, &m.line, moves, table));
     }
