@@ -41,16 +41,12 @@ void dea_fit_create(int order, int order_z, bool back, struct dea_gauss_fit *out
 {
   out->n = order + 1;
   out->nz = order_z + 1;
-  out->z[0][0] = 1;
   if (back) {
     back_line(order, out->plane);
+    back_line(order_z, out->z);
   } else {
     fit_line(order, order - 1, out->plane);
-  }
-  if (back && order_z > 0) {
-    back_line(order_z, out->z);
-  } else if (order_z > 0) {
-    fit_line(order_z, order_z > 1 ? order_z - 1 : 1, out->z);
+    fit_line(order_z, order_z > 1 ? order_z - 1 : order_z, out->z);
   }
 }
 
