@@ -18,7 +18,9 @@ void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_
     if (moved == NULL) {
       return;
     }
-    memcpy(moved, part->contour, part->contour_count * sizeof *moved);
+    if (part->contour_count > 0) {
+      memcpy(moved, part->contour, part->contour_count * sizeof *moved);
+    }
     part->contour = moved;
     part->contour_room = bigger;
   }
