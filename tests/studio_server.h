@@ -21,7 +21,6 @@ static inline void studio_start(struct studio_server *studio, const char *folder
     dup2(ends[1], STDOUT_FILENO);
     close(ends[0]);
     close(ends[1]);
-    unsetenv("XDG_RUNTIME_DIR");
     setenv("TMPDIR", command_folder, 1);
     execl(DEA_COMMAND, DEA_COMMAND, "studio", "--no-browser", "--quiet", folder, (char *)NULL);
     _exit(127);

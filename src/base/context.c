@@ -216,11 +216,11 @@ bool dea_status_ends(dea_status status)
 
 dea_status dea_forgive(struct dea_context *ctx, dea_status status)
 {
-  if (status != DEA_OK && !dea_status_ends(status)) {
-    dea_context_clear(ctx);
-    return DEA_OK;
+  if (dea_status_ends(status)) {
+    return status;
   }
-  return status;
+  dea_context_clear(ctx);
+  return DEA_OK;
 }
 
 static bool is_known(const struct dea_context *ctx, enum dea_severity severity,

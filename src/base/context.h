@@ -108,7 +108,8 @@ void dea_context_clear(struct dea_context *ctx);
 /* Whether nothing further can be tried after a failure: memory is short, or the run was
  * interrupted. */
 bool dea_status_ends(dea_status status);
-/* Forgets a failure after which something else is tried: DEA_OK, or a status that ends. */
+/* Forgets a failure after which something else is tried, and those before it: DEA_OK, or a status
+ * that ends. */
 dea_status dea_forgive(struct dea_context *ctx, dea_status status);
 
 /* Items of an array. */

@@ -37,12 +37,14 @@ dea_status dea_folder_create_temporary(struct dea_context *ctx, const char *word
 {
   const char *in = getenv("TMPDIR");
   in = in != NULL && in[0] != '\0' ? in : "/tmp";
+  dea_status status = DEA_OK;
   if (snprintf(folder, DEA_TEMPORARY_SIZE, "%s/dea-%s-XXXXXX", in, word) >= DEA_TEMPORARY_SIZE) {
-    return dea_fail(ctx, DEA_E_IO, "TMPDIR is too long a name");
+    status = dea_fail(ctx, DEA_E_IO, "TMPDIR is too long a name");
+  } else if (mkdtemp(folder) == NULL) {
+    status = dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", folder, strerror(errno));
   }
-  return mkdtemp(folder) != NULL
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", folder, strerror(errno));
+  folder[0] = status == DEA_OK ? folder[0] : '\0'; // nothing of another is removed at the end
+  return status;
 }
 
 static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *at)

@@ -57,12 +57,22 @@ static void evaluate(struct dea_context *ctx, const struct dea_evaluator *evalua
   reply->done.wall_s = dea_clock_s() - began_s;
 }
 
+/* One message; false where the other end is gone. */
+static bool receive_message(int socket, void *bytes, size_t length)
+{
+  ssize_t n;
+  do {
+    n = recv(socket, bytes, length, 0);
+  } while (n < 0 && errno == EINTR);
+  return n == (ssize_t)length;
+}
+
 /* Evaluates what it is sent until nobody sends any more. */
 static void work(struct dea_context *ctx, const struct dea_evaluator *evaluator, int socket)
 {
   struct reply reply;
   memset(&reply, 0, sizeof reply); // all bytes of it are sent
-  while (recv(socket, &reply.done, sizeof reply.done, 0) == (ssize_t)sizeof reply.done) {
+  while (receive_message(socket, &reply.done, sizeof reply.done)) {
     evaluate(ctx, evaluator, &reply);
     if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) < 0) {
       return;
@@ -173,7 +183,7 @@ static dea_status receive(struct dea_pool *pool, struct worker *worker, dea_case
                           void *user)
 {
   struct reply reply;
-  if (recv(worker->socket, &reply, sizeof reply, 0) == (ssize_t)sizeof reply) {
+  if (receive_message(worker->socket, &reply, sizeof reply)) {
     worker->busy = false;
   } else {
     reply = (struct reply){.done = worker->now};

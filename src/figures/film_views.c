@@ -44,7 +44,7 @@ struct space {
 
 enum { PICTURES_MAX = 33 };
 
-/* What `write` knows of a figure. */
+/* What each figure has of its own, for `write`. */
 struct view {
   bool moved, flat; // as of struct space
   size_t pieces;    // as of dea_surface_lattice_create
@@ -650,6 +650,7 @@ static dea_status build_shape(struct dea_context *ctx, const struct dea_surface_
   struct dea_field_mesh mesh = *record->mesh; // lends all but one array
   const struct dea_surface_record moved = {.voltage_V = record->voltage_V, .mesh = &mesh};
   double *values = dea_alloc(ctx, 3 * mesh.point_count, sizeof *values);
+  *out = (struct picture){.voltage_V = record->voltage_V};
   DEA_TRY_MEMORY(values != NULL);
   for (size_t i = 0; i < 3 * mesh.point_count; i++) {
     values[i] = 1e-6 * shape->values[i];

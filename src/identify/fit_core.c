@@ -84,9 +84,10 @@ dea_status dea_fit_core_values(struct dea_context *ctx, const struct dea_lsq_pro
                                              .high = NAN,
                                              .fixed = param->fixed,
                                              .at_bound = core->least_squares.at_bound[j]};
-    dea_progress(ctx, "profiles", j, core->param_count);
-    DEA_TRY(ctx,
-            profiles || all ? find_interval(ctx, problem, core, j, all, &core->values[j]) : DEA_OK);
+    if (profiles || all) {
+      dea_progress(ctx, "profiles", j, core->param_count);
+      DEA_TRY(ctx, find_interval(ctx, problem, core, j, all, &core->values[j]));
+    }
   }
   return DEA_OK;
 }

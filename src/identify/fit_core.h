@@ -52,10 +52,11 @@ struct dea_fit_core {
 /* Adds the residuals of all priors at p to r (NULL: none). Returns their number. */
 size_t dea_fit_priors_add(const struct dea_fit_param *params, size_t count, const double *p,
                           double *r);
-/* Fits and finds the statistics. solve: puts the minimum in the place of that in least_squares, and
- * sets the groups. It is called once; where priors weigh by a scatter that is to be found too,
- * again, each time with the scatter that was found last, until it stays: then it begins at a
- * hundredth of the guess, so that at first the rows speak and not a prior that they contradict. */
+/* Fits and finds the statistics. solve: puts the minimum in the place of that in least_squares;
+ * where the rows change it sets the groups anew. It is called once; where priors weigh by a scatter
+ * that is to be found too, again, each time with the scatter that was found last, until it stays:
+ * then it begins at a hundredth of the guess, so that at first the rows speak and not a prior that
+ * they contradict. */
 dea_status dea_fit_core_solve(struct dea_context *ctx, struct dea_fit_core *core,
                               dea_status (*solve)(void *user), void *user);
 /* Statistics of the minimum as it is now. */

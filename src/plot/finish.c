@@ -130,33 +130,44 @@ static void read_caption(const char *script, const char *name, char *out, size_t
   snprintf(out, size, "%.*s", told ? (int)(length - n) : (int)(n - 2), told ? words + n : name);
 }
 
-/* Text of directory/name.ending; *bytes NULL where there is no such file. */
-static dea_status read_named(struct dea_context *ctx, const char *directory, const char *name,
-                             const char *outcome, char **path, char **bytes, size_t *length)
+/* directory/name.ending */
+static dea_status find_named(struct dea_context *ctx, const char *directory, const char *name,
+                             const char *ending, char out[DEA_PATH_SIZE])
 {
   char file[128];
+  snprintf(file, sizeof file, "%.119s.%s", name, ending);
+  return dea_path_build(ctx, directory, file, out);
+}
+
+/* Text of a file; *bytes NULL where there is none. */
+static dea_status read_if_there(struct dea_context *ctx, const char *path, char **bytes,
+                                size_t *length)
+{
   *bytes = NULL;
-  snprintf(file, sizeof file, "%.119s.%s", name, outcome);
-  *path = dea_path_join(ctx, directory, file);
-  DEA_TRY_MEMORY(*path != NULL);
-  return dea_path_exists(*path) ? dea_file_read(ctx, *path, FILE_MAX, bytes, length) : DEA_OK;
+  return dea_path_exists(path) ? dea_file_read(ctx, path, FILE_MAX, bytes, length) : DEA_OK;
 }
 
 /* Completes one picture. A gnuplot that ends well may have drawn nothing, on a full disk or as
- * something else of that name. */
+ * something else of that name; a PDF or an animation, which may be large, is only looked at. */
 static dea_status finish_one(struct dea_context *ctx, const char *pictures, const char *name,
                              const char *outcome, const char *caption, bool wanted)
 {
-  char *path, *bytes, *done = NULL;
+  char path[DEA_PATH_SIZE], *bytes = NULL, *done = NULL, first;
   size_t length = 0;
-  dea_status status = read_named(ctx, pictures, name, outcome, &path, &bytes, &length);
+  const bool svg = strcmp(outcome, "svg") == 0, png = strcmp(outcome, "png") == 0;
+  dea_status status = find_named(ctx, pictures, name, outcome, path);
+  if (status == DEA_OK && (svg || png)) {
+    status = read_if_there(ctx, path, &bytes, &length);
+  } else if (status == DEA_OK) {
+    (void)dea_file_head(path, &first, 1, &length);
+  }
   if (status == DEA_OK && wanted && length == 0) {
     status = dea_fail(ctx, DEA_E_TOOL, "gnuplot has drawn nothing into %s", dea_path_name(path));
   }
-  if (status == DEA_OK && bytes != NULL && strcmp(outcome, "svg") == 0) {
+  if (status == DEA_OK && bytes != NULL && svg) {
     status = dea_svg_finish(ctx, bytes, caption, &done);
     length = done != NULL ? strlen(done) : 0;
-  } else if (status == DEA_OK && bytes != NULL && strcmp(outcome, "png") == 0) {
+  } else if (status == DEA_OK && bytes != NULL) {
     status = dea_png_finish(ctx, bytes, length, &done, &length);
   }
   if (status == DEA_OK && done != NULL) {
@@ -164,7 +175,6 @@ static dea_status finish_one(struct dea_context *ctx, const char *pictures, cons
   }
   dea_free(ctx, done);
   dea_free(ctx, bytes);
-  dea_free(ctx, path);
   return status;
 }
 
@@ -172,9 +182,10 @@ dea_status dea_picture_finish(struct dea_context *ctx, const char *pictures, con
                               const char *name, const struct dea_plot_format *format)
 {
   static const char *const outcomes[] = {"svg", "pdf", "png", "gif"};
-  char caption[400], *path, *bytes;
+  char caption[400], path[DEA_PATH_SIZE], *bytes = NULL;
   size_t length;
-  dea_status status = read_named(ctx, scripts, name, "gp", &path, &bytes, &length);
+  dea_status status = find_named(ctx, scripts, name, "gp", path);
+  status = status == DEA_OK ? read_if_there(ctx, path, &bytes, &length) : status;
   const char *script = bytes != NULL ? bytes : "";
   const bool all = strstr(script, "in formats]") != NULL; // else it is an animation
   const bool wanted[] = {all && format->svg, all && format->pdf, all && format->png, !all};
@@ -183,6 +194,5 @@ dea_status dea_picture_finish(struct dea_context *ctx, const char *pictures, con
     status = finish_one(ctx, pictures, name, outcomes[i], caption, wanted[i]);
   }
   dea_free(ctx, bytes);
-  dea_free(ctx, path);
   return status;
 }

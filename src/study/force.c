@@ -13,7 +13,6 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
-#include <string.h>
 
 static const char study_name[] = "force";
 
@@ -296,7 +295,7 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
   struct dea_panel *panel = &plot->panels[0];
   struct stops stops;
   int column = dea_point_column_find("force_N");
-  find_stops(dea_study_first_curve(result, study_name), &stops);
+  find_stops(dea_study_first_curve(result, study_name, 1), &stops);
   for (size_t i = 0; i < stops.count; i++) {
     struct dea_curve part = one_stop(&stops, i);
     struct dea_series look = stop_style(i);
@@ -341,7 +340,7 @@ static dea_status build_load_line(struct dea_context *ctx, const struct dea_resu
 {
   struct dea_panel *panel = &plot->panels[0];
   struct stops stops;
-  find_stops(dea_study_first_curve(result, study_name), &stops);
+  find_stops(dea_study_first_curve(result, study_name, 1), &stops);
   if (stops.count < 2) { // one depth is no line
     return DEA_OK;
   }

@@ -150,9 +150,10 @@ static dea_status check(struct dea_context *ctx, const struct dea_study *study,
   }
   struct dea_text text = {.ctx = ctx};
   add_known_to_none(study, a, &text);
-  dea_status status = warns ? dea_finding_add(ctx, DEA_WARNING, place_of(study, design),
-                                              "%s (compute.models)", dea_text_get(&text))
-                            : dea_fail(ctx, DEA_E_ARGUMENT, "%s", dea_text_get(&text));
+  dea_status status = text.failed ? DEA_E_MEMORY
+                      : warns     ? dea_finding_add(ctx, DEA_WARNING, place_of(study, design),
+                                                    "%s (compute.models)", dea_text_get(&text))
+                                  : dea_fail(ctx, DEA_E_ARGUMENT, "%s", dea_text_get(&text));
   dea_text_free(&text);
   return status;
 }

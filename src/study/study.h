@@ -79,8 +79,9 @@ dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *desi
 bool dea_study_asked(const struct dea_design *design, const char *name);
 /* Highest voltage that the result's curves have reached, or without any that of its design [V]. */
 double dea_study_highest_V(const struct dea_result *result);
-/* The first curve of that kind with points, of any model; NULL: none. */
-const struct dea_curve *dea_study_first_curve(const struct dea_result *result, const char *kind);
+/* The first curve of that kind with so many points at least, of any model; NULL: none. */
+const struct dea_curve *dea_study_first_curve(const struct dea_result *result, const char *kind,
+                                              size_t least);
 /* Voltage of the next limit point above a point's stretch on its model's path, minus the point's
  * voltage; NAN when the path, which may be NULL, has none. */
 double dea_study_distance_to_pull_in(const struct dea_curve *path,
@@ -118,7 +119,7 @@ typedef dea_status (*dea_study_stop)(struct dea_context *ctx, const struct dea_s
 dea_status dea_study_stop_by_stop(struct dea_context *ctx, const struct dea_study_job *job,
                                   const char *kind, bool whole, const double *voltages_V,
                                   size_t count, dea_study_stop add);
-/* Tells how far a study has come. */
+/* Reports the progress of a study: `done` of `total`. */
 void dea_study_progress(struct dea_context *ctx, const struct dea_study_job *job, const char *study,
                         size_t done, size_t total);
 /* Whether a model knows what the study needs of it. */

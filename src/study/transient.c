@@ -854,7 +854,7 @@ static dea_status add_voltages(struct dea_context *ctx, const struct dea_curve *
 static bool supplied(const struct dea_curve *curve)
 {
   bool any = false;
-  for (size_t i = 0; curve != NULL && curve->count > 1 && i < curve->count; i++) {
+  for (size_t i = 0; curve != NULL && i < curve->count; i++) {
     any = any || curve->points[i].source_voltage_V != 0; // NAN: not known to be at 0 V
   }
   return any;
@@ -863,7 +863,7 @@ static bool supplied(const struct dea_curve *curve)
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
                         struct dea_plot *plot)
 {
-  const struct dea_curve *curve = dea_study_first_curve(result, study_name);
+  const struct dea_curve *curve = dea_study_first_curve(result, study_name, 2);
   if (!supplied(curve)) {
     return DEA_OK;
   }
@@ -895,7 +895,7 @@ static dea_status build_one(struct dea_context *ctx, const struct dea_result *re
   struct dea_panel *panel = &plot->panels[0];
   const bool force = strcmp(plot->name, "history_force") == 0;
   const int column = dea_point_column_find(force ? "force_N" : "current_A");
-  if (!force && !supplied(dea_study_first_curve(result, study_name))) {
+  if (!force && !supplied(dea_study_first_curve(result, study_name, 2))) {
     return DEA_OK;
   }
   const struct dea_column *shown = &dea_point_columns[column];

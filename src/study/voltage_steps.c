@@ -27,10 +27,11 @@ size_t dea_study_stops(const struct dea_design *design, const struct dea_quantit
   return given_count > 0 ? given_count : count;
 }
 
-const struct dea_curve *dea_study_first_curve(const struct dea_result *result, const char *kind)
+const struct dea_curve *dea_study_first_curve(const struct dea_result *result, const char *kind,
+                                              size_t least)
 {
   for (size_t i = 0; i < result->curve_count; i++) {
-    if (strcmp(result->curves[i].kind, kind) == 0 && result->curves[i].count > 0) {
+    if (strcmp(result->curves[i].kind, kind) == 0 && result->curves[i].count >= least) {
       return &result->curves[i];
     }
   }

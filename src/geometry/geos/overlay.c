@@ -110,7 +110,10 @@ static dea_status read_polygons(const struct geos *g, const GEOSGeometry *from,
 {
   const int points = GEOSGetNumCoordinates_r(g->handle, from); // more than rings
   const int parts = GEOSGetNumGeometries_r(g->handle, from);
-  const size_t most = points > 0 ? (size_t)points : 0;
+  if (points < 0 || parts < 0) {
+    return report_failure(g);
+  }
+  const size_t most = (size_t)points;
   out->point = dea_alloc(g->ctx, most, sizeof *out->point);
   out->end = dea_alloc(g->ctx, most, sizeof *out->end);
   out->polygon = dea_alloc(g->ctx, most, sizeof *out->polygon);

@@ -226,7 +226,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
                                                  .spectral_radius = d->options.rho_inf,
                                                  .own_voltages = d->own};
   struct dea_circuit_film film = {.capacitance_F = 0};
-  if (d->own && (!dea_circuit_is_ideal(&d->options.circuit) || d->coupled)) {
+  if (d->own && !dea_circuit_is_ideal(&d->options.circuit)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "%s ideal sources: no series resistance and no limit of the current is known "
                     "of them",
@@ -240,7 +240,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
   if (own_sources) {
     memcpy(d->own_source, d->options.own_sources, count * sizeof *d->own_source);
   }
-  DEA_TRY(ctx, d->coupled ? DEA_OK : find_network(ctx, d, &d->network));
+  DEA_TRY(ctx, d->coupled && !d->own ? DEA_OK : find_network(ctx, d, &d->network));
   DEA_TRY(ctx, find_film(ctx, d, &film));
   d->circuit = (struct dea_circuit_state){.source_voltage_V = voltage_V,
                                           .voltage_V = voltage_V,
