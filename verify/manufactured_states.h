@@ -129,8 +129,8 @@ static inline bool states_electrode(const void *self, const double X[3], double 
 }
 
 /* Sources, and a start a little off the exact displacements where they are not held. */
-static inline void prepare(const struct exact *exact, const struct dea_grid *grid,
-                           struct dea_solid *solid)
+static inline void load_exactly(const struct exact *exact, const struct dea_grid *grid,
+                                struct dea_solid *solid)
 {
   double *u = dea_solid_displacement(solid);
   const struct sources to = {dea_solid_force(solid), calloc(grid->node_count, sizeof(double))};
@@ -169,7 +169,7 @@ static inline void solve(const struct exact *exact, struct dea_grid *grid, doubl
       .electrode = states_electrode,
       .self = exact};
   verify_ok(states_ctx, dea_solid_create(states_ctx, grid, &options, &solid));
-  prepare(exact, grid, solid);
+  load_exactly(exact, grid, solid);
   for (int i = 0; i < (exact->pressure != NULL ? 3 : 1); i++) { // multipliers beyond the tolerance
     verify_ok(states_ctx, dea_load_steps_solve(states_ctx, solid, 1, &report));
   }

@@ -204,7 +204,7 @@ static dea_status read_list(const struct dea_reader *reader, const struct dea_fi
   }
   *count = 0;
   for (const struct dea_node *item = node->child; item != NULL; item = item->next) {
-    char item_path[DEA_PATH_SIZE];
+    char item_path[DEA_KEY_PATH_SIZE];
     bool good;
     snprintf(item_path, sizeof item_path, "%s[%zu]", path, *count);
     DEA_TRY(reader->ctx, check_form(reader, field, item, true, &good));
@@ -427,7 +427,7 @@ static dea_status missing_group(const struct dea_reader *reader, const struct se
 static dea_status read_field(const struct dea_reader *reader, const struct section *section,
                              const struct dea_field *field)
 {
-  char path[DEA_PATH_SIZE];
+  char path[DEA_KEY_PATH_SIZE];
   snprintf(path, sizeof path, "%s%s%s", section->path, section->path[0] != '\0' ? "." : "",
            field->key);
   const struct dea_node *node = child_of(section, field);
@@ -463,9 +463,7 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
 {
   const struct dea_record *record = section->record;
   const char *keys[KEYS_MAX];
-  char list[MESSAGE_SIZE / 2];
   size_t count = list_keys(record, keys);
-  write_keys(record, count, list, sizeof list);
   for (const struct dea_node *node = section->node->child; node != NULL; node = node->next) {
     size_t i = find_key(record, count, node->key);
     if (i < count) {
@@ -475,8 +473,9 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
                                : check_twice(reader, section, &record->fields[i], node));
       continue;
     }
-    char hint[DEA_HINT_SIZE];
+    char hint[DEA_HINT_SIZE], list[MESSAGE_SIZE / 2];
     dea_name_hint(node->key, keys, count, hint);
+    write_keys(record, count, list, sizeof list);
     const char *below = section_with(record, node->key);
     DEA_TRY(reader->ctx,
             below != NULL

@@ -101,7 +101,7 @@ extern const char *const dea_no_yes[];
   }
 /* Of such a row: the table of a section within the file. */
 #define DEA_ROWS(rows)                                                                             \
-  (&(const struct dea_record){.fields = (rows), .field_count = sizeof(rows) / sizeof(rows)[0]})
+  (&(const struct dea_record){.fields = (rows), .field_count = DEA_COUNT(rows)})
 /* Of such a row: it is a list, in the struct or in memory of its own. */
 #define DEA_LIST(least, most, type, count)                                                         \
   .list_min = least, .list_max = most, .element_size = sizeof(type), .count_offset = count

@@ -125,8 +125,7 @@ static json_t *bare_json(const struct dea_field *field)
       json_pack("{s:s}", "type", field->kind == DEA_FIELD_INTEGER ? "integer" : "number");
   bool lower, upper;
   dea_field_limits(field, &lower, &upper);
-  if (json != NULL && lower && (field->min != 0 || upper || field->above_min) &&
-      isfinite(field->min)) {
+  if (json != NULL && lower && isfinite(field->min)) {
     json_object_set_new(json, field->above_min ? "exclusiveMinimum" : "minimum",
                         json_real(field->min));
   }

@@ -30,7 +30,7 @@ dea_status dea_schema_list(const struct dea_reader *reader, const char *path, co
   }
   DEA_TRY_STATUS(dea_array_grow(reader->ctx, &listing->items, listing->count, &listing->capacity,
                                 sizeof *listing->items));
-  char *copy = dea_copy_text(reader->ctx, path, DEA_PATH_SIZE);
+  char *copy = dea_copy_text(reader->ctx, path, DEA_KEY_PATH_SIZE);
   DEA_TRY_MEMORY(copy != NULL);
   listing->items[listing->count++] =
       (struct dea_listed){copy, text, unit, unit != NULL ? si : NAN, origin, location};

@@ -3,7 +3,7 @@
 
 #include "base/schema.h"
 
-enum { DEA_PATH_SIZE = 256 };
+enum { DEA_KEY_PATH_SIZE = 256 };
 
 /* A value being read. text: as written, or the default. */
 struct dea_schema_value {

@@ -119,7 +119,7 @@ const char *dea_entity_name(unsigned code)
 {
   static const char *const names[] = {
       ['<'] = "&lt;", ['>'] = "&gt;", ['&'] = "&amp;", ['"'] = "&quot;", ['\''] = "&#39;"};
-  return code < sizeof names / sizeof names[0] ? names[code] : NULL;
+  return code < DEA_COUNT(names) ? names[code] : NULL;
 }
 
 enum { NAME_MAX_LENGTH = 63 };

@@ -141,7 +141,7 @@ static void side_name(const struct request *request, size_t side, char *out)
   snprintf(out, DEA_LABEL_SIZE, "%.60s", alone ? own : path);
 }
 
-/* Model of the reference that is asked for beside this one, "" where none is asked for; NULL:
+/* Model of the reference that this model is to be compared with, "" where none is asked for; NULL:
  * others are. */
 static const char *reference_model(const struct request *request, const char *model)
 {

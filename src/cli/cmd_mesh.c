@@ -3,8 +3,6 @@
 #include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/actuator/mesh_file.h"
 
-#include <math.h>
-
 struct request {
   const char *design, *output; // output: NULL for none
   struct cli_overrides overrides;

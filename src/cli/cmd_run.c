@@ -17,7 +17,6 @@
 #include "study/study.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -247,7 +246,8 @@ static size_t find_shown(const struct dea_context *ctx, const struct dea_curve *
   return n;
 }
 
-/* "<" before what is an upper bound; left out beside a prediction. */
+/* "<" before an upper bound; "-" where there is no value, or left_out: another model predicts it.
+ */
 static void print_cell(const struct dea_load_point *p, const struct shown *c, bool left_out)
 {
   char text[400] = "-";

@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { PROFILE_V, PROFILE_X, PROFILE_Z, PROFILE_COLUMNS };
 

@@ -5,7 +5,6 @@
 #include <stddef.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_design_raw, design.member)
 #define RAW(member) offsetof(struct dea_design_raw, member)
 
@@ -442,7 +441,7 @@ static void fill_compute(const struct dea_design_sections *sections, bool genera
                          struct dea_design_form *out)
 {
   size_t count = 0;
-  for (size_t i = 0; i < COUNT(compute_fields); i++) {
+  for (size_t i = 0; i < DEA_COUNT(compute_fields); i++) {
     if (!general || strncmp(compute_fields[i].key, "coverage", strlen("coverage")) != 0) {
       out->compute[count++] = compute_fields[i];
     }
@@ -473,12 +472,12 @@ static void fill_general(const struct dea_shape_schema *shapes, struct dea_desig
 {
   out->record =
       (struct dea_record){"design file", "design of any actuator of flat layers", NULL, 0};
-  for (size_t i = 0; i < COUNT(design_fields); i++) {
+  for (size_t i = 0; i < DEA_COUNT(design_fields); i++) {
     const char *key = design_fields[i].key;
     if (strcmp(key, "gravity") == 0) { // the parts come before it
       add_fields(out, dea_parts_fields, dea_parts_field_count);
     }
-    if (!is_of(not_general, COUNT(not_general), key) &&
+    if (!is_of(not_general, DEA_COUNT(not_general), key) &&
         !is_of(dea_parts_fields, dea_parts_field_count, key)) {
       add_fields(out, &design_fields[i], 1);
     }
@@ -495,22 +494,23 @@ static void fill_general(const struct dea_shape_schema *shapes, struct dea_desig
       field->kinds = shapes->kinds;
     }
   }
-  add_fields(out, not_general, COUNT(not_general));
+  add_fields(out, not_general, DEA_COUNT(not_general));
 }
 
 void dea_design_schema_fill(const struct dea_design_sections *sections,
                             struct dea_design_schema *out)
 {
-  static_assert(COUNT(design_fields) + COUNT(not_short) <= DEA_DESIGN_TOP_MAX, "room for the top");
-  static_assert(COUNT(design_fields) + COUNT(not_general) + 9 <= DEA_DESIGN_TOP_MAX,
+  static_assert(DEA_COUNT(design_fields) + DEA_COUNT(not_short) <= DEA_DESIGN_TOP_MAX,
+                "room for the top");
+  static_assert(DEA_COUNT(design_fields) + DEA_COUNT(not_general) + 9 <= DEA_DESIGN_TOP_MAX,
                 "room for the top with all parts");
-  static_assert(COUNT(compute_fields) + DEA_DESIGN_SECTIONS_MAX <= DEA_DESIGN_COMPUTE_MAX,
+  static_assert(DEA_COUNT(compute_fields) + DEA_DESIGN_SECTIONS_MAX <= DEA_DESIGN_COMPUTE_MAX,
                 "room for all of compute");
   dea_shape_schema_fill(&out->shapes);
   out->disc.record =
       (struct dea_record){"design file", "design of a dielectric elastomer actuator", NULL, 0};
-  add_fields(&out->disc, design_fields, COUNT(design_fields));
-  add_fields(&out->disc, not_short, COUNT(not_short));
+  add_fields(&out->disc, design_fields, DEA_COUNT(design_fields));
+  add_fields(&out->disc, not_short, DEA_COUNT(not_short));
   fill_general(&out->shapes, &out->general);
   fill_compute(sections, false, &out->disc);
   fill_compute(sections, true, &out->general);

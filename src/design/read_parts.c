@@ -18,7 +18,7 @@ static void read_shapes(const struct dea_node *node, struct dea_parts_shape *sha
   }
 }
 
-/* A number of a row; NAN after a finding. */
+/* A number of a row; *out is not used after a finding. */
 static dea_status read_cell(const struct dea_reader *reader, const struct dea_node *node,
                             const char *key, const struct dea_measure *due, double *out)
 {

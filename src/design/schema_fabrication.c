@@ -3,7 +3,6 @@
 
 #include <stddef.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_design_raw, design.fabrication.member)
 
 static const struct dea_field sheet_fields[] = {
@@ -137,7 +136,8 @@ static const struct dea_field fields[] = {
     SECTION_ROW("tolerance", tolerance_fields, "tolerances of the check list"),
 };
 
-const struct dea_record dea_fabrication_record = {.fields = fields, .field_count = COUNT(fields)};
+const struct dea_record dea_fabrication_record = {.fields = fields,
+                                                  .field_count = DEA_COUNT(fields)};
 
 static const struct dea_field general_fields[] = {
     CUT_ROWS,
@@ -153,4 +153,4 @@ static const struct dea_field general_fields[] = {
 };
 
 const struct dea_record dea_fabrication_general_record = {.fields = general_fields,
-                                                          .field_count = COUNT(general_fields)};
+                                                          .field_count = DEA_COUNT(general_fields)};

@@ -5,7 +5,6 @@
 
 #include <stddef.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define RAW(member) offsetof(struct dea_design_raw, member)
 
 /* Rows of the tables below; `type` is the struct of an item. */
@@ -257,4 +256,4 @@ const struct dea_field dea_parts_fields[] = {
     ITEMS("monitors", monitor, monitors, DEA_PARTS_MONITORS_MAX, "what results are reported of",
           NO_ITEMS),
 };
-const size_t dea_parts_field_count = COUNT(dea_parts_fields);
+const size_t dea_parts_field_count = DEA_COUNT(dea_parts_fields);

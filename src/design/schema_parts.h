@@ -24,8 +24,8 @@ extern const struct dea_field dea_parts_fields[];
 extern const size_t dea_parts_field_count;
 
 /* Completes the lists that the tables have filled by the shapes [count], whose keys go with their
- * kinds (NULL: was no section), points, tables and waveforms; beside: the design file, from whose
- * folder paths count. */
+ * kinds (NULL: was no section), points, tables and waveforms; beside: path of the design file;
+ * relative paths start from its folder. */
 dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shape_schema *schema,
                           const char *beside, const struct dea_node *const *shapes, size_t count,
                           struct dea_parts *parts);

@@ -3,7 +3,6 @@
 
 #include <stddef.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_parts_shape, member)
 
 static const struct dea_field name_field =
@@ -72,17 +71,19 @@ static const struct {
   const struct dea_field *fields;
   size_t count;
 } made[] = {
-    {"union", "several shapes as one", DEA_MAKE_UNION, union_fields, COUNT(union_fields)},
+    {"union", "several shapes as one", DEA_MAKE_UNION, union_fields, DEA_COUNT(union_fields)},
     {"difference", "a shape without others", DEA_MAKE_DIFFERENCE, difference_fields,
-     COUNT(difference_fields)},
+     DEA_COUNT(difference_fields)},
     {"intersection", "the common part of shapes", DEA_MAKE_INTERSECTION, intersection_fields,
-     COUNT(intersection_fields)},
+     DEA_COUNT(intersection_fields)},
     {"array", "a shape in rows and columns, from its own place on", DEA_MAKE_ARRAY, array_fields,
-     COUNT(array_fields)},
+     DEA_COUNT(array_fields)},
     {"polar", "a shape again and again about a centre", DEA_MAKE_POLAR, polar_fields,
-     COUNT(polar_fields)},
-    {"copy", "a shape reflected, turned and moved", DEA_MAKE_COPY, copy_fields, COUNT(copy_fields)},
-    {"drawing", "a layer of a drawing", DEA_MAKE_DRAWING, drawing_fields, COUNT(drawing_fields)},
+     DEA_COUNT(polar_fields)},
+    {"copy", "a shape reflected, turned and moved", DEA_MAKE_COPY, copy_fields,
+     DEA_COUNT(copy_fields)},
+    {"drawing", "a layer of a drawing", DEA_MAKE_DRAWING, drawing_fields,
+     DEA_COUNT(drawing_fields)},
 };
 
 static struct dea_field parameter_field(const struct dea_shape_parameter *p, size_t index)
@@ -132,7 +133,7 @@ void dea_shape_schema_fill(struct dea_shape_schema *out)
     out->type[out->count] = type;
     out->make[out->count++] = DEA_MAKE_PRIMITIVE;
   }
-  for (size_t m = 0; m < COUNT(made); m++) {
+  for (size_t m = 0; m < DEA_COUNT(made); m++) {
     struct dea_field *field = start(out, made[m].name, made[m].doc);
     size_t *n = &out->record[out->count].field_count;
     for (size_t i = 0; i < made[m].count; i++) {

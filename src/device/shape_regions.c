@@ -39,11 +39,11 @@ static dea_status not_there(struct dea_context *ctx, const struct named *names, 
       dea_text_add(&list, "%s'%.60s'", i > 0 ? ", " : "", all[i]);
     }
   }
-  const char *near = dea_nearest_name(name, all, names->count);
+  char hint[DEA_HINT_SIZE];
   dea_status status =
-      near != NULL
-          ? dea_finding_add(ctx, DEA_ERROR, location, "there is no %s '%.60s'; did you mean '%s'?",
-                            names->what, name, near)
+      dea_name_hint(name, all, names->count, hint)[0] != '\0'
+          ? dea_finding_add(ctx, DEA_ERROR, location, "there is no %s '%.60s'%s", names->what, name,
+                            hint)
           : dea_finding_add(ctx, DEA_ERROR, location, "there is no %s '%.60s'; there %s %s",
                             names->what, name, names->count == 1 ? "is" : "are",
                             names->count > 0 ? dea_text_get(&list) : "none");

@@ -70,8 +70,8 @@ struct dea_design_space {
   char why[DEA_CRITICAL_WHY_SIZE]; // of the last one that there is not
   struct dea_arena memory;
   char id[DEA_CASE_ID_SIZE];
-  struct dea_case *now; // what is evaluated, where slopes are wanted too
-  /* Adds these, of each stop, as of struct dea_device_model; NULL: nobody. */
+  struct dea_case *now; // that is evaluated; set only with add_slopes
+  /* Adds slopes to it at each stop (`stood` of struct dea_device_model); NULL: none are wanted. */
   dea_status (*add_slopes)(const struct dea_design_space *space, struct dea_model *model,
                            const struct dea_device *device, size_t stop);
 };

@@ -3,7 +3,6 @@
 #include "base/correlations.h"
 #include "io/sparse_grid.h"
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_explore_file, member)
 #define VARIABLE_AT(member) offsetof(struct dea_explore_variable, member)
 #define LIMIT_AT(member) offsetof(struct dea_explore_limit, member)
@@ -207,6 +206,6 @@ static dea_status check(struct dea_context *ctx, const void *user)
 
 const struct dea_fit_form dea_explore_form = {
     {"file", "designs that differ in some values, and what is asked of them", file_fields,
-     COUNT(file_fields)},
+     DEA_COUNT(file_fields)},
     sizeof(struct dea_explore_file),
     check};

@@ -136,7 +136,7 @@ static dea_status find(struct dea_context *ctx, const struct dea_design_space *s
     return DEA_OK;
   }
   const dea_status status = space->model.type->gradient(ctx, model, &ask, slopes);
-  if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+  if (dea_status_ends(status)) {
     return status;
   }
   if (status != DEA_OK) { // none at this design
@@ -162,7 +162,7 @@ static dea_status find_critical(struct dea_context *ctx, const struct dea_design
     }
     const dea_status status =
         dea_critical_slopes(ctx, &space->critical[i], sides->changes, sides->count, slopes);
-    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+    if (dea_status_ends(status)) {
       return status;
     }
     if (status != DEA_OK) { // none at this design

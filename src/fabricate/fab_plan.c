@@ -245,7 +245,7 @@ static void add_edge(const struct dea_fab_plan *plan, const double half_m[2],
   }
 }
 
-/* What is cut and marked beside the layout's own shapes. */
+/* What is cut and marked in addition to the layout's own shapes. */
 static dea_status build_edges(struct dea_context *ctx, struct dea_fab_plan *plan)
 {
   const struct dea_fabrication *f = &plan->design->fabrication;
@@ -592,9 +592,8 @@ static dea_status check_marks(struct dea_context *ctx, const struct dea_fab_plan
   }
   for (int m = 0; m < DEA_FAB_MARKS; m++) {
     for (size_t i = 0; i < plan->pad_count; i++) {
-      const double *a = plan->mark_at_m[m], *b = plan->pad[i].at_m;
       // in the unstretched film, where both are cut from one stencil
-      if (hypot(a[0] - b[0], a[1] - b[1]) <
+      if (dea_apart_m(plan->mark_at_m[m], plan->pad[i].at_m) <
           plan->mark_m + plan->pad_m + plan->feature_m * plan->stretch) {
         return dea_finding_add(ctx, DEA_ERROR, f->leads.pad_diameter.length.location,
                                "parts overlap: a pad of %.4g mm diameter (stretched) reaches to an "

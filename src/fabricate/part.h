@@ -47,7 +47,7 @@ struct dea_part_measure {
 };
 
 struct dea_part {
-  struct dea_arena *memory; // of the contours, lent; knows when it was short
+  struct dea_arena *memory; // of the contours, lent; its `failed` says that memory was short
   enum dea_part_kind kind;
   size_t of;                       // number of the ply or body
   char name[DEA_PART_NAME_SIZE];   // of the files: "frame"

@@ -3,9 +3,7 @@
 #include "base/file.h"
 #include "figures/device_drawing.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { FRAME = 0xc9ced6, FIBRE = 0xe0a04a, WHITE = 0xffffff };
 

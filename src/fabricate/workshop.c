@@ -3,7 +3,6 @@
 #include "fabricate/layout_parts.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- sheets ---- */
 

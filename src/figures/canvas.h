@@ -40,8 +40,9 @@ struct dea_canvas_type {
 };
 
 /* One that adds an SVG to a text: no more than this library is needed. Letters have about the width
- * that DejaVu Sans gives them. number: tells the drawings of one page apart. canvas: ends by the
- * second. DEA_E_MEMORY; later want of memory marks the text. */
+ * that DejaVu Sans gives them. number: of the drawing on its page, so that ids differ. canvas:
+ * freed by dea_canvas_svg_end, which also ends the SVG. DEA_E_MEMORY; later want of memory marks
+ * the text. */
 extern const struct dea_canvas_type dea_canvas_svg;
 dea_status dea_canvas_svg_begin(struct dea_text *out, int number, double width_mm, double height_mm,
                                 struct dea_canvas **canvas);

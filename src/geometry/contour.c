@@ -215,8 +215,7 @@ bool dea_contour_is_circle(const struct dea_contour *contour, double centre[2], 
   const struct dea_piece first = dea_contour_piece(contour, 0);
   for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
     const struct dea_piece piece = dea_contour_piece(contour, i);
-    if (!piece.arc || hypot(piece.centre[0] - first.centre[0], piece.centre[1] - first.centre[1]) >
-                          1e-9 * first.radius_m) {
+    if (!piece.arc || dea_apart_m(piece.centre, first.centre) > 1e-9 * first.radius_m) {
       return false;
     }
   }

@@ -113,8 +113,7 @@ static dea_status fit(struct dea_drawing *d, const struct curve *curve, const do
   const struct dea_contour contour = {ends, 2, false};
   const struct dea_piece piece = dea_contour_piece(&contour, 0);
   for (int k = 1; k < SAMPLES; k++) {
-    worst = fmax(worst, chord > 0 ? dea_piece_distance_m(&piece, x[k])
-                                  : hypot(x[k][0] - last[0], x[k][1] - last[1]));
+    worst = fmax(worst, chord > 0 ? dea_piece_distance_m(&piece, x[k]) : dea_apart_m(x[k], last));
   }
   double near = fit_m, quarters = fabs(half) / (0.25 * pi);
   if (curve->cubic && depth == 0 && piece.arc && quarters < 1.05) {

@@ -4,7 +4,7 @@
 #include "base/context.h"
 
 /* Zero-initialise with the context and the tolerance >= 0, which is the distance up to which points
- * are one; for 0 also the order of magnitude of the distance between points, in cell_m. As of
+ * are one; for 0 also the order of magnitude of the distance between points, in cell_m. As with
  * struct dea_text, what could not be added for want of memory is left out and `failed` stays set.
  */
 struct dea_point_map {

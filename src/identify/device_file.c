@@ -1,6 +1,5 @@
 #include "identify/device_file.h"
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_device_file, member)
 #define CURVE_AT(member) offsetof(struct dea_device_curve_text, member)
 
@@ -79,6 +78,6 @@ static dea_status check(struct dea_context *ctx, const void *file)
 
 const struct dea_fit_form dea_device_form = {
     {"fit file", "measurements of a device and what of its design is fitted", file_fields,
-     COUNT(file_fields)},
+     DEA_COUNT(file_fields)},
     sizeof(struct dea_device_file),
     check};

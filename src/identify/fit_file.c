@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_fit_file, member)
 #define TEST_AT(member) offsetof(struct dea_fit_test, member)
 
@@ -194,10 +193,11 @@ static dea_status check(struct dea_context *ctx, const void *file)
   return dea_fit_names_check(ctx, fit->tests, fit->test_count, sizeof fit->tests[0], "test");
 }
 
-const struct dea_fit_form dea_fit_form = {
-    {"fit file", "measurements of a material and what is fitted", fit_fields, COUNT(fit_fields)},
-    sizeof(struct dea_fit_file),
-    check};
+const struct dea_fit_form dea_fit_form = {{"fit file",
+                                           "measurements of a material and what is fitted",
+                                           fit_fields, DEA_COUNT(fit_fields)},
+                                          sizeof(struct dea_fit_file),
+                                          check};
 
 /* ---- its tests ---- */
 

@@ -329,7 +329,9 @@ dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit)
   struct dea_arena arena = {.ctx = ctx};
   dea_status status = DEA_OK;
   const int last = fit->model.branch_count > 0 ? DEA_COUPON_MODES : DEA_COUPON_MODES - 1;
-  for (int which = 0; which <= last && status == DEA_OK; which++) {
+  const struct dea_lsq_statistics *found = &fit->core.statistics;
+  const bool any = found->active > 0 && isfinite(found->variance);
+  for (int which = 0; which <= last && any && status == DEA_OK; which++) {
     status = propose(&arena, fit, which, list, &count);
   }
   if (status == DEA_OK) {

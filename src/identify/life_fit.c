@@ -5,7 +5,6 @@
 #include "table/csv_columns.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 const char *const dea_life_end_names[DEA_LIFE_ENDS] = {"survived", "stroke", "leakage", "breakdown",
@@ -15,7 +14,6 @@ const char *const dea_life_end_names[DEA_LIFE_ENDS] = {"survived", "stroke", "le
 
 #define AT(member) offsetof(struct dea_life_file, member)
 #define OF(member) offsetof(struct dea_life_specimen, member)
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 const char *const dea_life_clock_names[] = {"cycles", "time", "under_voltage", "charge", NULL};
 const char *const dea_life_clock_units[] = {"cycles", "h", "h", "mC"};
@@ -103,7 +101,7 @@ static dea_status check_file(struct dea_context *ctx, const void *file)
 }
 
 const struct dea_fit_form dea_life_form = {
-    {"fit file", "life tests, for Weibull's law of them", fields, COUNT(fields)},
+    {"fit file", "life tests, for Weibull's law of them", fields, DEA_COUNT(fields)},
     sizeof(struct dea_life_file),
     check_file};
 

@@ -42,12 +42,18 @@ static dea_status begin_sheet(struct dea_context *ctx, struct sheet *out)
 }
 
 /* Writes directory/MODEL_KIND.csv, or MODEL_KIND_WHAT.csv; kind, what: "" for none. */
+static void name_sheet(const char *model, const char *kind, const char *what,
+                       char out[DEA_RESULT_TABLE_FILE_SIZE])
+{
+  snprintf(out, DEA_RESULT_TABLE_FILE_SIZE, "%s%s%s%s%s.csv", model, kind[0] != '\0' ? "_" : "",
+           kind, what[0] != '\0' ? "_" : "", what);
+}
+
 static dea_status end_sheet(struct sheet *s, const char *directory, const char *model,
                             const char *kind, const char *what)
 {
-  char name[3 * DEA_NAME_SIZE + 8];
-  snprintf(name, sizeof name, "%s%s%s%s%s.csv", model, kind[0] != '\0' ? "_" : "", kind,
-           what[0] != '\0' ? "_" : "", what);
+  char name[DEA_RESULT_TABLE_FILE_SIZE];
+  name_sheet(model, kind, what, name);
   dea_c_locale_leave(s->locale);
   dea_status status = s->any ? dea_text_write(s->text.ctx, &s->text, directory, name) : DEA_OK;
   dea_free(s->text.ctx, s->columns);
@@ -311,8 +317,7 @@ static dea_status write_table(struct dea_context *ctx, const struct dea_result_t
 
 void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESULT_TABLE_FILE_SIZE])
 {
-  snprintf(out, DEA_RESULT_TABLE_FILE_SIZE, "%s_%s_%s.csv", table->model, table->type.study,
-           table->type.name);
+  name_sheet(table->model, table->type.study, table->type.name, out);
 }
 
 /* Whether a variant is the first of its model and study. */

@@ -74,26 +74,23 @@ static size_t cells_of(const struct dea_mesh_block *block)
 /* Everything that is written. */
 struct grid {
   const struct dea_field_mesh *mesh;
-  size_t copies, cells,
-      nodes; // copies that each block holds one after the other; nodes of all cells
+  size_t copies;       // that each block holds, one after the other
+  size_t cells, nodes; // of all copies; nodes: of all cells
 };
-
-static void add_number(struct dea_text *out, double value, bool in_double)
-{
-  const float single = (float)value;
-  dea_text_add_bytes(out, in_double ? (const void *)&value : &single,
-                     in_double ? sizeof value : sizeof single);
-}
 
 static void add_int(struct dea_text *out, int32_t value)
 {
   dea_text_add_bytes(out, &value, sizeof value);
 }
 
-static void add_points(struct dea_text *out, const double *values, size_t count, bool in_double)
+static void add_numbers(struct dea_text *out, const double *values, size_t count, bool in_double)
 {
-  for (size_t i = 0; i < count; i++) {
-    add_number(out, values[i], in_double);
+  if (in_double) {
+    dea_text_add_bytes(out, values, count * sizeof *values);
+  }
+  for (size_t i = 0; i < count && !in_double; i++) {
+    const float single = (float)values[i];
+    dea_text_add_bytes(out, &single, sizeof single);
   }
 }
 
@@ -110,13 +107,13 @@ static void add_field(struct dea_text *out, const struct grid *grid,
   const size_t n = (size_t)field->components;
   const double *values = field->values;
   if (!field->of_cells) {
-    add_points(out, values, mesh->point_count * n, is_double(field));
+    add_numbers(out, values, mesh->point_count * n, is_double(field));
     return;
   }
   for (size_t b = 0; b < mesh->block_count; b++) {
     for (size_t e = 0; e < mesh->blocks[b].count; e++, values += n) {
       for (size_t k = 0; k < cells_of(&mesh->blocks[b]); k++) {
-        add_points(out, values, n, is_double(field));
+        add_numbers(out, values, n, is_double(field));
       }
     }
   }
@@ -220,7 +217,7 @@ static void add_cells(struct file *file, const struct grid *grid)
 {
   dea_text_add(&file->head, "<Points>\n");
   open_array(file, "Float64", "Points", 3);
-  add_points(&file->data, grid->mesh->X, 3 * grid->mesh->point_count, true);
+  add_numbers(&file->data, grid->mesh->X, 3 * grid->mesh->point_count, true);
   close_array(file);
   dea_text_add(&file->head, "</Points>\n<Cells>\n");
   open_array(file, "Int32", "connectivity", 1);

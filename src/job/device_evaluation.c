@@ -13,11 +13,11 @@
 /* Statuses after which the work cannot go on. */
 static bool is_fatal(dea_status status)
 {
-  return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED || status == DEA_E_TOOL ||
-         status == DEA_E_UNSUPPORTED;
+  return dea_status_ends(status) || status == DEA_E_TOOL || status == DEA_E_UNSUPPORTED;
 }
 
-/* A failure that is none of these is but kept in words. */
+/* Keeps the message of a failure after which the work can go on in model->why, and gives DEA_OK;
+ * passes the others on. */
 static dea_status keep_why(struct dea_device_model *model, dea_status status)
 {
   if (status == DEA_OK || is_fatal(status)) {
@@ -308,8 +308,7 @@ static dea_status sweep_from(struct dea_device_model *model, const double *from,
     if (own && status == DEA_OK) {
       memcpy(points, model->start.points, model->stop_count * sizeof *points);
     }
-    const bool ends = status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED;
-    if (own || ends) {
+    if (own || dea_status_ends(status)) {
       return status;
     }
     dea_context_clear(model->ctx);

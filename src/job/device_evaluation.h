@@ -29,7 +29,8 @@ struct dea_device_start {
   struct dea_load_point *points; // [stop_count], owned
 };
 
-/* Zero-initialise, and set from file to wanted. */
+/* Zero-initialise, and set from ctx to wanted, and observed, built, stood and user where they are
+ * used. */
 struct dea_device_model {
   struct dea_context *ctx;
   struct dea_design_bytes file;
@@ -44,7 +45,8 @@ struct dea_device_model {
                      // dea_device_model_want changes them
   struct dea_device_memo memo[DEA_DEVICE_MEMO];
   size_t memo_next;
-  struct dea_state *states; // [stop_count] of the last evaluation, owned; NULL: no warm starts
+  struct dea_state
+      *states; // [stop_count] of the last evaluation, owned; NULL: none yet, or no warm starts
   struct dea_device_start start;
   bool from_start; // this evaluation begins from the states of start, which stay
   bool doubtful;   // it has gone another way than start

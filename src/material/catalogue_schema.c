@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define LAW(member) offsetof(struct dea_law_set, member)
 #define PERMITTIVITY(member) offsetof(struct dea_permittivity_set, member)
 #define BREAKDOWN(member) offsetof(struct dea_breakdown_set, member)
@@ -225,9 +224,9 @@ static const struct dea_field material_fields[] = {
 };
 
 const struct dea_record dea_material_file_record = {"material file", "data file of a material",
-                                                    material_fields, COUNT(material_fields)};
+                                                    material_fields, DEA_COUNT(material_fields)};
 const struct dea_record dea_material_inline_record = {
-    "material", "a material of this design", material_fields + 1, COUNT(material_fields) - 1};
+    "material", "a material of this design", material_fields + 1, DEA_COUNT(material_fields) - 1};
 
 /* Finds the law of a set; an unknown one is a finding with the nearest name and all names. */
 static dea_status find_law(const struct dea_reader *reader, struct dea_law_set *set)
@@ -251,7 +250,7 @@ static dea_status find_law(const struct dea_reader *reader, struct dea_law_set *
   const char *names[32];
   size_t named = 0;
   char hint[DEA_HINT_SIZE];
-  for (size_t i = 0; i < count && named < COUNT(names); i++) {
+  for (size_t i = 0; i < count && named < DEA_COUNT(names); i++) {
     if (laws[i]->compressible == NULL) {
       names[named++] = laws[i]->name;
     }
@@ -446,7 +445,7 @@ dea_status dea_material_data_finish(const struct dea_reader *reader, const char 
   for (size_t i = 0; i < data->law_count; i++) {
     struct dea_law_set *set = &data->laws[i];
     DEA_TRY(reader->ctx, find_law(reader, set));
-    char inner[DEA_PATH_SIZE];
+    char inner[DEA_KEY_PATH_SIZE];
     const char *dot = path[0] != '\0' ? "." : "";
     if (set->law != NULL && set->parameters != NULL) {
       snprintf(inner, sizeof inner, "%s%slaws[%zu].parameters", path, dot, i);

@@ -350,8 +350,8 @@ dea_status dea_model_create_whole(struct dea_context *ctx, const struct dea_mode
                                   const struct dea_design *design, const struct dea_device *device,
                                   struct dea_model **out);
 
-/* Calls to what not every model can and a caller may ask of any: DEA_E_UNSUPPORTED, with a message,
- * where it is NULL. */
+/* Calls of functions that not every model has, for callers that do not check: DEA_E_UNSUPPORTED,
+ * with a message, where the pointer is NULL. */
 dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *type,
                           struct dea_model *model, const struct dea_path_options *options,
                           dea_point_sink points, dea_event_sink events, void *user);

@@ -8,7 +8,6 @@
 #include "model/solid_check.h"
 
 #include <pthread.h>
-#include <stdio.h>
 
 static const char module_file[] = "dea_solid_module.so";
 static const char advice[] =

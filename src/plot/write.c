@@ -4,7 +4,6 @@
 #include "plot/script.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 // Data -------------------------------------------------------------------------------------------

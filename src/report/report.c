@@ -9,7 +9,6 @@
 
 #include <sha256.h>
 #include <stdio.h>
-#include <string.h>
 
 /* 'sha256-...' of what stands in a style or script element. */
 static void add_hash(struct dea_text *out, const char *bytes, size_t length)

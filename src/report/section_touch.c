@@ -4,7 +4,6 @@
 #include "report/section.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const struct threshold {

@@ -202,7 +202,8 @@ int dea_studio_jobs_add(struct dea_studio_jobs *jobs, json_t *facts,
     id = ++jobs->last_id;
     json_object_set_new(facts, "id", json_integer(id));
     jobs->jobs[jobs->count++] =
-        (struct job){.id = id, .facts = json_incref(facts), .line = *line, .terminal = -1};
+        (struct job){.id = id, .facts = facts, .line = *line, .terminal = -1};
+    facts = NULL; // the job has them
   }
   pthread_mutex_unlock(&jobs->lock);
   json_decref(facts);

@@ -262,7 +262,8 @@ struct mover {
   struct line line;
 };
 
-/* The next of them about the bias of a curve's point `from`, of monitors the motion along an axis,
+/* Numbers 0 and 1, which are no columns of monitors, stand for centre and fibre tip. The next about
+ * the bias of a curve's point `from`, of monitors the motion along an axis,
  * 3: that along which each moves most. False: there is no more. */
 static bool find_mover(const struct dea_context *ctx, const struct dea_curve *curve, size_t from,
                        size_t axis, struct mover *m)
@@ -479,8 +480,11 @@ static dea_status add_bias(struct dea_context *ctx, const struct dea_curve *curv
   common_axis(ctx, curve, &largest);
   while (find_mover(ctx, curve, from, 3, &m)) {
     char moves[DEA_NAME_SIZE + 8];
-    snprintf(moves, sizeof moves, "%.60s%s%c", m.name, m.monitor ? ", " : "",
-             m.monitor ? "xyz"[m.axis] : '\0');
+    if (m.monitor) {
+      snprintf(moves, sizeof moves, "%.60s, %c", m.name, "xyz"[m.axis]);
+    } else {
+      snprintf(moves, sizeof moves, "%.60s", m.name);
+    }
     if (!m.monitor || largest_of(&m.line) > least_share * largest) {
       DEA_TRY(ctx, add_peaks(ctx, &m.line, moves, table));
     }

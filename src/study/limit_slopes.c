@@ -5,7 +5,6 @@
 #include "study/number_rows.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const char study_name[] = "sensitivity";

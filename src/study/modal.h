@@ -1,4 +1,4 @@
-/* What study "modal" tells of a design. */
+/* Study "modal": whether a design asks for it. */
 #pragma once
 
 #include "design/design.h"

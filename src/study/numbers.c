@@ -8,8 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 /* Where numbers are gathered. */
 struct list {
   const struct dea_design *design;
@@ -139,7 +137,7 @@ static void add_material(struct list *list, size_t i)
     number.high = param->max;
     add(list, &number);
   }
-  for (size_t k = 0; k < COUNT(rows); k++) {
+  for (size_t k = 0; k < DEA_COUNT(rows); k++) {
     const struct row *row = &rows[k];
     struct dea_design_number number = of_material(list->device, i, row->key, "", row->offset);
     const bool has = row->has == ANY || (row->has == LINEAR && law == NULL) ||
@@ -192,7 +190,7 @@ static const struct part_list {
     LIST("shapes", dea_parts_shape, shapes, shape_count, offsetof(struct dea_parts_shape, name)),
 #undef LIST
 };
-enum { PLIES = 0, SHAPES = COUNT(part_lists) - 1 }; // these go by their kinds
+enum { PLIES = 0, SHAPES = DEA_COUNT(part_lists) - 1 }; // these go by their kinds
 
 static const struct dea_record *record_of(const struct part_list *list)
 {
@@ -386,7 +384,7 @@ static bool is_aside(const char *key)
 {
   static const char *const sections[] = {"compute.", "report.", "fabrication.", "drive.",
                                          "fibres.angle"};
-  for (size_t i = 0; i < COUNT(sections); i++) {
+  for (size_t i = 0; i < DEA_COUNT(sections); i++) {
     if (strncmp(key, sections[i], strlen(sections[i])) == 0) {
       return strcmp(key, "compute.coverage") != 0;
     }

@@ -13,8 +13,6 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdio.h>
-#include <string.h>
 
 static const char study_name[] = "sensitivity";
 

@@ -170,17 +170,6 @@ static dea_status keep_model(struct search *s, struct dea_state *kept)
   return dea_state_copy_values(s->ctx, &now, kept);
 }
 
-static dea_status reserve(struct search *s)
-{
-  if (s->count < s->capacity) {
-    return DEA_OK;
-  }
-  struct state *more = dea_resize(s->ctx, s->states, 2 * s->capacity + 8, sizeof *more);
-  s->states = more != NULL ? more : s->states;
-  s->capacity = more != NULL ? 2 * s->capacity + 8 : s->capacity;
-  return more != NULL ? DEA_OK : DEA_E_MEMORY;
-}
-
 /* Adds the state that the model is at where that is new; *index: which one it is. */
 static dea_status add_state(struct search *s, size_t level, const struct dea_load_point *point,
                             const char *reached, int *index)
@@ -189,7 +178,9 @@ static dea_status add_state(struct search *s, size_t level, const struct dea_loa
   size_t count = 0;
   DEA_TRY(s->ctx, store_film(s, &u, &count));
   *index = find_state(s, level, point, u);
-  dea_status status = *index == NONE ? reserve(s) : DEA_OK;
+  dea_status status =
+      *index == NONE ? dea_array_grow(s->ctx, &s->states, s->count, &s->capacity, sizeof *s->states)
+                     : DEA_OK;
   if (status != DEA_OK || *index != NONE) {
     dea_free(s->ctx, u);
     return status;

@@ -534,7 +534,7 @@ static dea_status add_table(struct work *w)
 static dea_status find_all(struct work *w, const struct dea_settings *given)
 {
   struct dea_context *ctx = w->ctx;
-  if (w->job.services.run == NULL) { // of who runs single studies by hand
+  if (w->job.services.run == NULL) { // the caller lends none for changed designs
     return DEA_OK;
   }
   DEA_TRY(ctx, find_params(w, given->values));

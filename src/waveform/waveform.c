@@ -24,7 +24,6 @@ struct raw {
   struct dea_choice spacing;
 };
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct raw, member)
 #define KIND DEA_LABEL_ROW("kind", AT(kind), "square", "kind of waveform", .required = true)
 /* A voltage of either sign. */
@@ -407,7 +406,7 @@ static dea_status build_table(const struct raw *raw, struct dea_waveform *out)
 
 #define WAVE_RECORD(name, meaning)                                                                 \
   static const struct dea_record name##_record = {#name, meaning, name##_fields,                   \
-                                                  COUNT(name##_fields)};
+                                                  DEA_COUNT(name##_fields)};
 KINDS(WAVE_RECORD)
 #undef WAVE_RECORD
 
@@ -431,14 +430,14 @@ dea_status dea_waveform_read(const struct dea_reader *reader, const struct dea_n
                              const char *path, const char *beside, struct dea_waveform **out)
 {
   struct dea_context *ctx = reader->ctx;
-  const char *names[COUNT(kinds)];
+  const char *names[DEA_COUNT(kinds)];
   size_t index, errors = dea_finding_count(ctx, DEA_ERROR);
   *out = NULL;
-  for (size_t i = 0; i < COUNT(kinds); i++) {
+  for (size_t i = 0; i < DEA_COUNT(kinds); i++) {
     names[i] = kinds[i].record->name;
   }
-  DEA_TRY(ctx, dea_schema_kind(reader, node, "a waveform", names, COUNT(kinds), &index));
-  if (index == COUNT(kinds)) {
+  DEA_TRY(ctx, dea_schema_kind(reader, node, "a waveform", names, DEA_COUNT(kinds), &index));
+  if (index == DEA_COUNT(kinds)) {
     return DEA_OK;
   }
   struct raw *raw = dea_alloc(ctx, 1, sizeof *raw);

@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double poll_s = 0.01;
@@ -167,18 +166,14 @@ bool dea_supply_release(struct dea_supply *supply, double within_s)
 dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, const char *text)
 {
   char line[DEA_SUPPLY_LEFT_SIZE + DEA_INSTRUMENT_MARK_SIZE + DEA_INSTRUMENT_HOST_SIZE];
-  char stamp[32] = "";
-  time_t now = time(NULL);
-  struct tm utc;
+  char stamp[DEA_STAMP_SIZE];
   if (supply->file < 0) {
     return DEA_OK;
   }
-  if (gmtime_r(&now, &utc) != NULL) {
-    strftime(stamp, sizeof stamp, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  }
   bool more = supply->mark[0] != '\0' || supply->host[0] != '\0';
-  int length = snprintf(line, sizeof line, "%.180s (%s)\n%s%s%s%s", text, stamp, supply->mark,
-                        more ? "\n" : "", supply->host, supply->host[0] != '\0' ? "\n" : "");
+  int length =
+      snprintf(line, sizeof line, "%.180s (%s)\n%s%s%s%s", text, dea_clock_stamp(stamp),
+               supply->mark, more ? "\n" : "", supply->host, supply->host[0] != '\0' ? "\n" : "");
   length = text[0] != '\0' ? length : 0;
   // over what stood there, which stays on a disk that is full: an empty file would say "at 0 V"
   if (pwrite(supply->file, line, (size_t)length, 0) != (ssize_t)length ||

@@ -5,7 +5,6 @@
 #include <ctype.h>
 #include <math.h>
 
-#define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 #define AT(member) offsetof(struct dea_mapping, member)
 #define OF(member) offsetof(struct dea_mapped, member)
 
@@ -30,7 +29,7 @@ static const struct dea_field column_fields[] = {
                    .max = 1e9, .above_min = true, .absent_text = "none"),
 };
 static const struct dea_record column_record = {"columns", "a column that becomes a channel",
-                                                column_fields, COUNT(column_fields)};
+                                                column_fields, DEA_COUNT(column_fields)};
 
 static const struct dea_field profile_fields[] = {
     DEA_LABEL_ROW("columns", AT(profile.columns), "z*",
@@ -55,7 +54,7 @@ static const struct dea_field profile_fields[] = {
 };
 static const struct dea_record profile_record = {"profile",
                                                  "columns that are the points of a profile sensor",
-                                                 profile_fields, COUNT(profile_fields)};
+                                                 profile_fields, DEA_COUNT(profile_fields)};
 
 static const struct dea_field mapping_fields[] = {
     DEA_INTEGER_ROW("dea-import", AT(version), "1", "version of the format of mappings",
@@ -84,7 +83,7 @@ static const struct dea_field mapping_fields[] = {
 
 const struct dea_record dea_mapping_record = {"mapping",
                                               "what the columns of a measurement's file mean",
-                                              mapping_fields, COUNT(mapping_fields)};
+                                              mapping_fields, DEA_COUNT(mapping_fields)};
 
 bool dea_mapping_matches(const char *name, const char *wanted, bool pattern)
 {

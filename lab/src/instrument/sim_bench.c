@@ -81,7 +81,7 @@ static dea_status follow(struct dea_sim_bench *b, double length_s, double end_V)
     double h = last ? left_s : fmin(b->next_s, 0.5 * left_s);
     double source_V = last ? end_V : b->source_V + (end_V - b->source_V) * h / left_s;
     dea_status status = try_step(b, h, source_V, &good);
-    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+    if (dea_status_ends(status)) {
       return status;
     }
     if (good) {

@@ -162,7 +162,7 @@ static dea_status allowed_voltage(const struct film *film, double high_V, double
     double middle_V = 0.5 * (low_V + high_V);
     struct dea_bench_point at;
     dea_status status = film->model->type->solve(film->ctx, film->model, middle_V, &at);
-    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+    if (dea_status_ends(status)) {
       return status;
     }
     bool good = status == DEA_OK && at.point.true_field_V_per_m <= allowed_field(film, &at);

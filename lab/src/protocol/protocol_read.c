@@ -25,7 +25,6 @@ struct raw {
   struct dea_protocol_input inputs[DEA_PROTOCOL_INPUTS_MAX];
 };
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct raw, protocol.member)
 #define RAW(member) offsetof(struct raw, member)
 #define STEP(member) offsetof(struct dea_protocol_step, member)
@@ -155,13 +154,13 @@ static const struct dea_field safety_fields[] = {
 };
 
 static const struct dea_record step_record = {"step", "one step of the sequence", step_fields,
-                                              COUNT(step_fields)};
+                                              DEA_COUNT(step_fields)};
 static const struct dea_record amplifier_record = {"amplifier", "the high-voltage amplifier",
-                                                   amplifier_fields, COUNT(amplifier_fields)};
+                                                   amplifier_fields, DEA_COUNT(amplifier_fields)};
 static const struct dea_record input_record = {"channel", "an analogue input", input_fields,
-                                               COUNT(input_fields)};
+                                               DEA_COUNT(input_fields)};
 static const struct dea_record safety_record = {"safety", "what must not be exceeded",
-                                                safety_fields, COUNT(safety_fields)};
+                                                safety_fields, DEA_COUNT(safety_fields)};
 
 static const struct dea_field protocol_fields[] = {
     DEA_INTEGER_ROW("dea-protocol", RAW(version), "1", "version of the format of protocols",
@@ -204,8 +203,9 @@ static const struct dea_field protocol_fields[] = {
                   .doc = "the simulated bench of --sim", .example = "{seed: 2}"),
 };
 
-static const struct dea_record protocol_record = {
-    "protocol", "protocol of a measurement on the bench", protocol_fields, COUNT(protocol_fields)};
+static const struct dea_record protocol_record = {"protocol",
+                                                  "protocol of a measurement on the bench",
+                                                  protocol_fields, DEA_COUNT(protocol_fields)};
 
 void dea_protocol_schema_fill(const struct dea_record *const *instruments,
                               const struct dea_record *const *sim, struct dea_protocol_schema *out)
@@ -213,7 +213,7 @@ void dea_protocol_schema_fill(const struct dea_record *const *instruments,
   *out = (struct dea_protocol_schema){.record = protocol_record};
   memcpy(out->fields, protocol_fields, sizeof protocol_fields);
   out->record.fields = out->fields;
-  for (size_t i = 0; i < COUNT(protocol_fields); i++) {
+  for (size_t i = 0; i < DEA_COUNT(protocol_fields); i++) {
     struct dea_field *field = &out->fields[i];
     field->kinds = field->offset == AT(instruments) ? instruments
                    : field->offset == AT(sim)       ? sim
@@ -385,7 +385,7 @@ static dea_status read_sequence(const struct dea_reader *reader, struct raw *raw
                             "such steps");
   }
   for (size_t i = 0; i < protocol->step_count; i++) {
-    char path[DEA_PATH_SIZE] = "waveform";
+    char path[DEA_KEY_PATH_SIZE] = "waveform";
     if (raw->waveform == NULL) {
       snprintf(path, sizeof path, "sequence[%zu].waveform", i);
     }

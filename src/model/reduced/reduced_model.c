@@ -6,7 +6,6 @@
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* In time, of the stroke: what is wanted, and from where on the model refuses. */
 static const double follows = 0.03, beyond = 0.05;

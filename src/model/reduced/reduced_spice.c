@@ -12,7 +12,6 @@
 #include "model/reduced/reduced.h"
 
 #include <math.h>
-#include <stdio.h>
 
 enum { N = DEA_REDUCED_TERMS };
 static const double unit = 1e-6, nC = 1e-9, farad = 1e-9;

@@ -596,6 +596,11 @@ dea_status dea_mesh_follow(struct dea_context *ctx, const struct dea_layout *lay
                            const struct dea_model_settings *settings,
                            const struct dea_layout_mesh *like, struct dea_layout_mesh *out)
 {
+  *out = (struct dea_layout_mesh){0};
+  if (layout->region_count != like->layout->region_count ||
+      layout->ply_count != like->layout->ply_count) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow: there are other parts");
+  }
   *out = (struct dea_layout_mesh){.memory = {.ctx = ctx},
                                   .layout = layout,
                                   .membrane = like->membrane,
@@ -603,11 +608,6 @@ dea_status dea_mesh_follow(struct dea_context *ctx, const struct dea_layout *lay
                                   .plane = like->plane,
                                   .like = true,
                                   .group = like->group};
-  if (layout->region_count != like->layout->region_count ||
-      layout->ply_count != like->layout->ply_count) {
-    *out = (struct dea_layout_mesh){0};
-    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow: there are other parts");
-  }
   if (!same_regions(layout, like->layout)) {
     DEA_TRY_ELSE(ctx, move_plane(ctx, like, layout, &out->memory, &out->plane),
                  dea_layout_mesh_free(ctx, out));

@@ -67,8 +67,11 @@ static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent ex
   for (size_t k = (size_t)s->problem.laminate[e]; k != e && status == DEA_OK;
        k = (size_t)s->problem.laminate[k]) {
     struct dea_membrane_state other;
-    status = counts(s, e, k, extent) ? ply_of(s, k, voltage_V, &other) : status;
-    for (int p = 0; counts(s, e, k, extent) && status == DEA_OK && p < out->count; p++) {
+    if (!counts(s, e, k, extent)) {
+      continue;
+    }
+    status = ply_of(s, k, voltage_V, &other);
+    for (int p = 0; status == DEA_OK && p < out->count; p++) {
       for (int i = 0; i < 3; i++) {
         out->force[p][i] += other.force[p][i];
       }

@@ -157,8 +157,8 @@ static void order_by_tree(struct analysis *a, int *work)
   memcpy(a->order, next, (size_t)n * sizeof *next);
 }
 
-/* Rows below each column: those of K, and those of all columns whose parent it is. work: [3 nodes].
- */
+/* Rows below each column: those of K, and those of all columns whose parent it is; and its parent,
+ * the first of them. work: [3 nodes]. */
 static dea_status find_rows(struct dea_context *ctx, struct analysis *a, const int *place,
                             int *work)
 {

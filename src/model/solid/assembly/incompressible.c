@@ -35,9 +35,10 @@ void dea_solid_change_bulk_modulus(struct dea_solid *s, double factor)
 dea_status dea_solid_assemble_forces(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                      double *energy)
 {
-  s->state.bulk_factor *= dea_solid_dropped;
+  static const double dropped = 0x1p-100; // so little of kappa that kappa theta is no pressure
+  s->state.bulk_factor *= dropped;
   dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, energy);
-  s->state.bulk_factor /= dea_solid_dropped;
+  s->state.bulk_factor /= dropped;
   return status;
 }
 

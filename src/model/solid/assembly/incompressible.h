@@ -15,9 +15,8 @@ void dea_solid_update_multipliers(struct dea_solid *s);
  * pressures; theta has to belong to u. With DEA_SOLID_STIFF the solid is as good as incompressible.
  */
 void dea_solid_change_bulk_modulus(struct dea_solid *s, double factor);
-/* Of kappa: so little of it that kappa theta is no pressure, but theta is still found. */
-static const double dea_solid_dropped = 0x1p-100;
-/* Energy and forces with that, at the pressures that the multipliers are. */
+/* Energy and forces at the pressures that the multipliers are, without those of kappa theta; theta
+ * is still found. */
 dea_status dea_solid_assemble_forces(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                      double *energy);
 /* K with a kappa so large that its inertia is that of the incompressible solid, at u. */

@@ -141,16 +141,14 @@ void dea_internal_variables_begin(struct dea_internal_variables *h, const struct
   }
 }
 
-dea_status dea_internal_variables_energy(struct dea_internal_variables *h,
-                                         const struct dea_solid *s, double *energy_J)
+double dea_internal_variables_energy(const struct dea_internal_variables *h)
 {
-  *energy_J = 0;
-  DEA_TRY_STATUS(measure(s, h));
+  double energy_J = 0;
   for (size_t at = 0; at < h->count; at++) {
-    *energy_J +=
+    energy_J +=
         h->volume_m3[at] * dea_viscous_energy(h->B[at], h->b_Pa[h->part_material[at]], h->C[at]);
   }
-  return DEA_OK;
+  return energy_J;
 }
 
 /* What the branches of a point store at the end of the step and dissipate in it. */

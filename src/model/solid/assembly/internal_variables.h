@@ -41,9 +41,9 @@ void dea_internal_variables_destroy(struct dea_context *ctx,
 void dea_internal_variables_begin(struct dea_internal_variables *variables,
                                   const struct dea_solid *solid, double step_s);
 
-/* What the step adds to the solid's energy at its displacements [J]. */
-dea_status dea_internal_variables_energy(struct dea_internal_variables *variables,
-                                         const struct dea_solid *solid, double *energy_J);
+/* What the step adds to the solid's energy at the displacements of the last creation or close [J].
+ */
+double dea_internal_variables_energy(const struct dea_internal_variables *variables);
 
 /* Energies of the branches, of the grid [J]. */
 struct dea_solid_branch_energies {

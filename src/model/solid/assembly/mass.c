@@ -36,7 +36,7 @@ dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat 
 {
   DEA_TRY(ctx, dea_solid_add_scalar(ctx, s, A, factor, mass_of));
   const double *mass_kg = s->problem.point_mass;
-  return mass_kg != NULL ? add_diagonal(ctx, s, A, factor, mass_kg, 1) : DEA_OK;
+  return DEA_CHAIN(ctx, mass_kg != NULL ? add_diagonal(ctx, s, A, factor, mass_kg, 1) : DEA_OK);
 }
 
 /* 0 in K's pattern. */

@@ -4,8 +4,7 @@
  * Mesh, displacements and forces are on every rank; elements, pieces of loads and rows of K are
  * split. What a decision hangs on is summed on one rank and sent to the others, so that all see the
  * same bits and go the same way. All functions but dea_solid_rank, dea_solid_ranks,
- * dea_solid_share, dea_solid_alloc_doubles and
- * dea_solid_petsc are calls that all ranks make. */
+ * dea_solid_share, dea_solid_alloc_doubles and dea_solid_petsc are calls that all ranks make. */
 #pragma once
 
 #include "base/arena.h"

@@ -526,14 +526,15 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   return DEA_OK;
 }
 
-/* Beside the way from the point before to the last one: bulge x (x - 1) at a fraction x. */
+/* Offset of the guess from the chord between the point before and the last one: bulge x (x - 1) at
+ * a fraction x of the chord. */
 struct bulge {
   double *state; // [state_count]
   double load;
 };
 
-/* The equilibrium in the plane that is set, from the guess at a fraction of that way. bulge: NULL
- * on it. */
+/* The equilibrium in the plane that is set, from the guess at a fraction of the chord; bulge: NULL
+ * for a guess on the chord. */
 static dea_status solve_between(struct dea_context *ctx, struct dea_solid_continuation *t,
                                 double fraction, const struct bulge *bulge)
 {

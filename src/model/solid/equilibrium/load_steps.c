@@ -128,7 +128,7 @@ static dea_status descend_if_possible(struct dea_context *ctx, struct dea_solid 
 
 /* ---- from a stable equilibrium to another ---- */
 
-/* dea_solid_perturb from state, which is that of the solid. */
+/* Equilibrium from the solid's state displaced by push_m. */
 static dea_status solve_pushed(struct dea_context *ctx, struct dea_solid *s, const double *push_m,
                                struct dea_solid_report *report)
 {

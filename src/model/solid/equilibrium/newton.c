@@ -132,9 +132,15 @@ dea_status dea_solid_linear_step(struct dea_context *ctx, struct dea_solid *s)
   return DEA_CHAIN(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
 }
 
+/* A force over the sum of element forces, where that is known. */
+static double over_scale(const struct dea_solid *s, double force_N)
+{
+  return force_N / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+}
+
 double dea_solid_residual(const struct dea_solid *s)
 {
-  return norm(s, s->work.g) / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
+  return over_scale(s, norm(s, s->work.g));
 }
 
 void dea_solid_predict_tangent(struct dea_solid *s, const double *step)
@@ -390,7 +396,7 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
   DEA_TRY(ctx,
           dea_solid_assemble(ctx, s, d->voltage_V, chord ? DEA_FORCE : tangent, &report->energy_J));
   double size = norm(s, s->work.g);
-  report->residual = dea_solid_residual(s);
+  report->residual = over_scale(s, size);
   report->theta_max = dea_solid_theta_max(s);
   if (d->chord && (d->chords == o->lag_jacobian || !(size < lag_rate * d->norm_before)) &&
       !(report->residual < o->newton_rtol)) {

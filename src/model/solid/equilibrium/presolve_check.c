@@ -71,9 +71,7 @@ static void rigid_row(const double X[3], const double centre[3], double length, 
     row[i] = q[i];
     r[i] = (X[i] - centre[i]) / length;
   }
-  for (int i = 0; i < 3; i++) { // q . (e_i x r) = e_i . (r x q)
-    row[3 + i] = r[(i + 1) % 3] * q[(i + 2) % 3] - r[(i + 2) % 3] * q[(i + 1) % 3];
-  }
+  dea_cross(r, q, row + 3); // q . (e_i x r) = e_i . (r x q)
 }
 
 /* Sum of the squares of rigid_row over the held components of one body. */

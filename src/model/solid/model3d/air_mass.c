@@ -2,6 +2,7 @@
 
 #include "base/quadrature.h"
 #include "geometry/region.h"
+#include "model/solid/point/part_material.h"
 
 #include <math.h>
 #include <string.h>
@@ -90,8 +91,8 @@ static void add_cell(struct work *w, const int *nodes, int row, const double at[
     x[2][i] *= size[1];
   }
   const double *a = x[1], *b = x[2];
-  const double normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                            a[0] * b[1] - a[1] * b[0]};
+  double normal[3];
+  dea_cross(a, b, normal);
   memcpy(cell->x, x[0], sizeof cell->x);
   cell->own = own_potential(a, b, sqrt(dot(normal, normal)));
   for (size_t k = 0; k < w->count; k++) {

@@ -29,7 +29,7 @@ dea_status dea_solid_model_rate(struct dea_context *ctx, struct dea_solid *s,
 {
   double energy_J[3] = {0};
   dea_status status = DEA_OK;
-  for (int side = -1; side <= 1 && status == DEA_OK; side++) {
+  for (int side = -1; side <= 1 && status == DEA_OK; side += by_energy != NULL ? 1 : 2) {
     s->state.voltage_V = voltage_V + side * step_V;
     status = dea_adjoint_assemble(ctx, adjoint, s->state.voltage_V, &energy_J[side + 1]);
     for (size_t i = 0; i < s->problem.dofs; i++) {
@@ -37,8 +37,10 @@ dea_status dea_solid_model_rate(struct dea_context *ctx, struct dea_solid *s,
     }
   }
   s->state.voltage_V = voltage_V;
-  by_energy[0] = (energy_J[2] - energy_J[0]) / (2 * step_V);
-  by_energy[1] = (energy_J[2] - 2 * energy_J[1] + energy_J[0]) / (step_V * step_V);
+  if (by_energy != NULL) {
+    by_energy[0] = (energy_J[2] - energy_J[0]) / (2 * step_V);
+    by_energy[1] = (energy_J[2] - 2 * energy_J[1] + energy_J[0]) / (step_V * step_V);
+  }
   return status;
 }
 

@@ -345,7 +345,6 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
 {
   const size_t dofs = w->solid->problem.dofs, width = dea_gradient_width(w->ask);
   struct border *b = &w->border;
-  double by_energy[2];
   double *first = dea_adjoint_slope(w->adjoint, 0), *of_v = dea_adjoint_slope(w->adjoint, width);
   bool known;
   b->rate = dea_arena_alloc(memory, dofs, sizeof(double));
@@ -355,7 +354,7 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
   bool *wanted = dea_arena_alloc(memory, width + 1, sizeof *wanted);
   DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
   DEA_TRY(ctx, dea_solid_model_rate(ctx, w->solid, w->adjoint, w->voltage_V,
-                                    share_of_voltage * w->voltage_V, b->rate, by_energy));
+                                    share_of_voltage * w->voltage_V, b->rate, NULL));
   memcpy(of_v, b->rate, dofs * sizeof *of_v);
   wanted[width] = true;
   DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, wanted));
@@ -568,14 +567,15 @@ static dea_status find_null_mode(struct dea_context *ctx, struct work *w)
 static dea_status find_limit(struct dea_context *ctx, struct work *w, double *out)
 {
   const size_t dofs = w->solid->problem.dofs;
-  double *rate = w->null_mode + dofs, by_energy[2];
+  double *rate = w->null_mode + dofs;
   DEA_TRY(ctx, dea_solid_model_rate(ctx, w->solid, w->adjoint, w->voltage_V,
-                                    share_of_voltage * w->voltage_V, rate, by_energy));
+                                    share_of_voltage * w->voltage_V, rate, NULL));
   memcpy(dea_adjoint_slope(w->adjoint, RATE), rate, dofs * sizeof *rate);
   DEA_TRY(ctx, find_null_mode(ctx, w));
   DEA_TRY(ctx, find_by_changes(ctx, w, out));
+  const double along = dea_solid_dot(w->solid, dea_adjoint_answer(w->adjoint, NULL_MODE), rate);
   for (size_t c = 0; c < w->ask->change_count; c++) {
-    out[c] /= -dea_solid_dot(w->solid, dea_adjoint_answer(w->adjoint, NULL_MODE), rate);
+    out[c] /= -along;
   }
   return DEA_OK;
 }

@@ -15,7 +15,7 @@ struct dea_indent {
   double copies;     // of the domain in the actuator
 };
 
-/* A probe at a depth, which is added to the solid; that must be destroyed first. other: in its
+/* A probe at a depth, added to the solid's loads; the solid is destroyed before it. other: in its
  * place among the solid's loads until dea_indent_end_variant, which destroys the new one, and with
  * the same points in touch with the same pressures, without a penalty of its own: on a changed
  * actuator and its mesh, whose faces are those of the other, for gradients

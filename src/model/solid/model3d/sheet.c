@@ -641,13 +641,11 @@ static dea_status allocate_places(struct dea_sheet *sheet)
 
 static dea_status allocate_potentials(struct dea_sheet *sheet)
 {
-  double **const values[] = {&sheet->potential_V, &sheet->charge_C, &sheet->charge_next_C,
-                             &sheet->half_V,      &sheet->whole_V,  &sheet->half_C,
-                             &sheet->off_V};
   sheet->channel = dea_arena_alloc(&sheet->memory, sheet->potentials, sizeof *sheet->channel);
-  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-    *values[i] = dea_arena_alloc(&sheet->memory, sheet->potentials, sizeof(double));
-  }
+  dea_solid_alloc_doubles(&sheet->memory, sheet->potentials,
+                          (double **[]){&sheet->potential_V, &sheet->charge_C,
+                                        &sheet->charge_next_C, &sheet->half_V, &sheet->whole_V,
+                                        &sheet->half_C, &sheet->off_V, NULL});
   return dea_arena_status(&sheet->memory);
 }
 

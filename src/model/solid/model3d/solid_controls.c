@@ -165,7 +165,8 @@ static dea_status report_passed(struct dea_context *ctx, struct dea_model *model
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "model 3d: at %.4g kV it snaps past a limit point at %.6g %s to another "
                          "state",
-                         1e-3 * model->at.voltage_V, force ? 1e3 * limit : limit,
+                         1e-3 * model->at.voltage_V,
+                         force ? limits[control->kind][turns].scale * limit : limit,
                          force ? limits[control->kind][turns].unit : "of the control");
 }
 

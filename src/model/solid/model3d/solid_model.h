@@ -3,7 +3,6 @@
 
 #include "model/solid/actuator/layout_mesh.h"
 #include "model/solid/assembly/problem.h"
-#include "model/solid/equilibrium/adjoint.h"
 #include "model/solid/equilibrium/solve_incremental.h"
 #include "model/solid/load/loads.h"
 #include "model/solid/model3d/buckling_branch.h"
@@ -255,9 +254,10 @@ dea_status dea_solid_model_create(struct dea_context *ctx, const struct dea_devi
 dea_status dea_solid_model_errors(struct dea_context *ctx, struct dea_model *model, double *error);
 
 // compliance.c
+struct dea_adjoint;
 /* dR/dV at the unknowns as they are, added to rate [dofs], and of the energy there the first and
- * the second slope, by central differences: residuals and energy are of second degree in the
- * voltage, so that any step is exact but for films that wrinkle freely. */
+ * the second slope (NULL: not wanted), by central differences: residuals and energy are of second
+ * degree in the voltage, so that any step is exact but for films that wrinkle freely. */
 dea_status dea_solid_model_rate(struct dea_context *ctx, struct dea_solid *solid,
                                 struct dea_adjoint *adjoint, double voltage_V, double step_V,
                                 double *rate, double by_energy[2]);

@@ -462,8 +462,8 @@ static const enum dea_observed region_motions[REGION_MOTIONS] = {
     DEA_OBSERVED_X,         DEA_OBSERVED_Y,         DEA_OBSERVED_Z,
     DEA_OBSERVED_STRETCH_X, DEA_OBSERVED_STRETCH_Y, DEA_OBSERVED_AREA_STRETCH};
 
-/* All of them into values, and how `motion` changes with each displacement into weight, 0 before;
- * NULL: not wanted. */
+/* All of them into values or, with a weight, 0 before, only `motion` and how it changes with each
+ * displacement into weight. */
 static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
                            const double *u, double *values, enum dea_observed motion,
                            double *weight)
@@ -485,10 +485,11 @@ static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_
                   part[p % points] * part[p / points], u, &at);
       area += at.dA;
       for (int k = 0; k < REGION_MOTIONS; k++) {
-        double *slope = region_motions[k] == motion ? weight : NULL;
-        sum[k] += at.dA * (k < 3   ? displacement_along(&at, share[k], u, slope)
-                           : k < 5 ? tangent_length(mesh, k == 4, &at, slope)
-                                   : area_stretch(&at, slope));
+        if (weight == NULL || region_motions[k] == motion) {
+          sum[k] += at.dA * (k < 3   ? displacement_along(&at, share[k], u, weight)
+                             : k < 5 ? tangent_length(mesh, k == 4, &at, weight)
+                                     : area_stretch(&at, weight));
+        }
       }
     }
   }

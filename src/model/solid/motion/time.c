@@ -143,15 +143,12 @@ static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t,
                               double *capacitance_F, struct charged *charged)
 {
   struct dea_solid *s = t->solid;
-  double potential = 0, capacitance = 0, step = 0;
+  double potential = 0, capacitance = 0;
   dea_status status = dea_solid_energy(s, s->state.u, s->state.voltage_V, &potential);
   if (status == DEA_OK) {
     status = t->own ? find_charged(ctx, s, charged) : dea_solid_capacitance(ctx, s, &capacitance);
   }
-  if (status == DEA_OK && t->variables != NULL) {
-    status = dea_internal_variables_energy(t->variables, s, &step);
-  }
-  potential -= step;
+  potential -= t->variables != NULL ? dea_internal_variables_energy(t->variables) : 0;
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the energy of the film cannot be evaluated");
   }

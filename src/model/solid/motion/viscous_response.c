@@ -10,7 +10,7 @@
 #include <complex.h>
 #include <string.h>
 
-enum { PARTS = 2 }; // K without branches, and M; then one for all part materials with the same
+enum { PARTS = 2 }; // K without branches, M; then one per different set of branches
 
 struct system {
   struct dea_arena memory; // of all arrays

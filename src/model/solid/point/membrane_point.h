@@ -3,7 +3,7 @@
  * Symbol   meaning                                                                     unit
  * F        dx/dX, its in-plane columns F_1, F_2; F[2 i + J] here                       1
  * G        pre-stretch, symmetric; C = G c G with c_JL = F_J . F_L                     1
- * W        energy per volume of film, with field (tension_field.h)                           Pa */
+ * W        energy per volume of film, with field (tension_field.h)                     Pa */
 #pragma once
 
 #include "model/solid/point/part_material.h"

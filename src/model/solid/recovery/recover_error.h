@@ -14,7 +14,8 @@ struct dea_recover_probe {
 
 /* A quantity that is linear in u. */
 struct dea_recover_quantity {
-  double *z;                          // the answer to the load that has its weights [3 node_count]
+  double *z; // answer to the load with its weights [3 node_count]; of dea_solid_errors [dofs], the
+             // weights before
   struct dea_recover_probe probes[2]; // where it is read inside of elements
   size_t probe_count;
 };

@@ -195,10 +195,9 @@ void dea_recover_plane(const struct dea_part_material *part_material, const doub
                        const double force[6], struct dea_plane_state *out)
 {
   const double a[3] = {F[0], F[3], F[6]}, b[3] = {F[1], F[4], F[7]};
-  const double normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                            a[0] * b[1] - a[1] * b[0]};
-  double e[2][3], T[2][2], squares[2], cof[9], C[3] = {dot(a, a), dot(b, b), dot(a, b)};
+  double normal[3], e[2][3], T[2][2], squares[2], cof[9], C[3] = {dot(a, a), dot(b, b), dot(a, b)};
   double length = sqrt(dot(a, a));
+  dea_cross(a, b, normal);
   out->area = sqrt(dot(normal, normal));
   dea_part_material_pull_back(part_material, C, C);
   principal(C[0], C[1], C[2], squares);
