@@ -10,11 +10,14 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* Outside of mpirun Open MPI need not look for networks: a fifth of the start-up. */
+/* Outside of mpirun Open MPI need not look for networks, a fifth of the start-up, nor make the
+ * folder in /tmp that all such processes share: one that ends may remove it under another that
+ * starts. */
 static void start_mpi_alone(void)
 {
   if (getenv("OMPI_COMM_WORLD_SIZE") == NULL) {
     setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
     setenv("OMPI_MCA_btl", "self", 0);
     setenv("OMPI_MCA_pml", "ob1", 0);
   }
