@@ -78,10 +78,16 @@ static inline void skip_sanitized(void)
   }
 }
 
+/* Whether `scripts/test --nightly` runs. */
+static inline bool nightly(void)
+{
+  return getenv("DEA_NIGHTLY") != NULL;
+}
+
 /* For a long case that others stand beside: `scripts/test --nightly` runs it. */
 static inline void only_nightly(void)
 {
-  if (getenv("DEA_NIGHTLY") == NULL) {
+  if (!nightly()) {
     skip();
   }
 }
