@@ -88,7 +88,7 @@ dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid 
 
 /* ---- volume and grad : grad ---- */
 
-/* L of an element [nodes][nodes] and its volume. */
+/* L of an element [nodes][nodes], NULL: not wanted, and its volume. */
 static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace, double *lumped,
                             double *volume)
 {
@@ -127,9 +127,9 @@ void dea_solid_lump_volume(const struct dea_solid *s, double *volume)
   const struct dea_solid_problem *p = &s->problem;
   memset(volume, 0, p->dofs * sizeof *volume);
   for (size_t e = 0; e < p->grid->element_count; e++) {
-    double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, whole;
+    double lumped[DEA_HEX_NODES_MAX] = {0}, whole;
     const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
-    metric_of(s, e, laplace, lumped, &whole);
+    metric_of(s, e, NULL, lumped, &whole);
     for (int n = 0; n < dea_grid_nodes_of(p->grid, e); n++) {
       for (int i = 0; i < 3; i++) {
         volume[3 * nodes[n] + i] += lumped[n];
@@ -147,7 +147,7 @@ dea_status dea_solid_create_volume(struct dea_context *ctx, struct dea_solid *s,
 
 double dea_solid_volume_of(const struct dea_solid *s, size_t e)
 {
-  double laplace[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], lumped[DEA_HEX_NODES_MAX] = {0}, volume;
-  metric_of(s, e, laplace, lumped, &volume);
+  double lumped[DEA_HEX_NODES_MAX] = {0}, volume;
+  metric_of(s, e, NULL, lumped, &volume);
   return volume;
 }

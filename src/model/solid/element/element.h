@@ -141,7 +141,8 @@ struct dea_element_type {
   dea_status (*motion)(const struct dea_element *e, const struct dea_element_input *in,
                        const struct dea_element_motion *motion, double *stiffness, double *mass);
   /* What a shift of K and a norm of displacements are made of: int grad N_a . grad N_b [m],
-   * [nodes][nodes]; and the volume lumped to the nodes [m^3], all positive. */
+   * [nodes][nodes], NULL where it is not wanted; and the volume lumped to the nodes [m^3], all
+   * positive. */
   dea_status (*metric)(const struct dea_element *e, const struct dea_part_material *part_material,
                        const double *X, double *laplace, double *volume);
   /* A stiffness [N/m] of each node, whatever the state, for modes that have none of their own

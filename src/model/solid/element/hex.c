@@ -550,17 +550,11 @@ dea_status dea_hex_metric(const struct dea_element *element,
   (void)part_material;
   DEA_TRY_STATUS(dea_hex_kinematics(s, X, rest, gradient, points));
   size_t nodes = (size_t)s->nodes;
-  memset(laplace, 0, nodes * nodes * sizeof *laplace);
   memset(volume, 0, nodes * sizeof *volume);
   for (int q = 0; q < s->gauss; q++) {
-    double w = points[q].weight;
-    whole += w;
-    for (size_t a = 0; a < nodes; a++) {
-      const double *x = gradient[q][0], *y = gradient[q][1], *z = gradient[q][2];
-      for (size_t b = 0; b < nodes; b++) {
-        laplace[a * nodes + b] += w * (x[a] * x[b] + y[a] * y[b] + z[a] * z[b]);
-      }
-      volume[a] += w * s->value[q][a] * s->value[q][a]; // the diagonal of the mass matrix
+    whole += points[q].weight;
+    for (size_t a = 0; a < nodes; a++) { // the diagonal of the mass matrix
+      volume[a] += points[q].weight * s->value[q][a] * s->value[q][a];
     }
   }
   for (size_t a = 0; a < nodes; a++) {
@@ -568,6 +562,18 @@ dea_status dea_hex_metric(const struct dea_element *element,
   }
   for (size_t a = 0; a < nodes; a++) {
     volume[a] *= whole / sum;
+  }
+  if (laplace == NULL) {
+    return DEA_OK;
+  }
+  memset(laplace, 0, nodes * nodes * sizeof *laplace);
+  for (int q = 0; q < s->gauss; q++) {
+    const double *x = gradient[q][0], *y = gradient[q][1], *z = gradient[q][2];
+    for (size_t a = 0; a < nodes; a++) {
+      for (size_t b = 0; b < nodes; b++) {
+        laplace[a * nodes + b] += points[q].weight * (x[a] * x[b] + y[a] * y[b] + z[a] * z[b]);
+      }
+    }
   }
   return DEA_OK;
 }

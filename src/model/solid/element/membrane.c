@@ -243,14 +243,16 @@ static dea_status metric(const struct dea_element *element,
   const struct dea_face_shape *shape = element->basis;
   double gradient[2][DEA_FACE_NODES_MAX], whole = 0;
   size_t nodes = (size_t)shape->nodes;
-  memset(laplace, 0, nodes * nodes * sizeof *laplace);
+  for (size_t i = 0; i < nodes * nodes && laplace != NULL; i++) {
+    laplace[i] = 0;
+  }
   for (int q = 0; q < shape->points; q++) {
     double weight = part_material->thickness_m * gradients_at(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }
     whole += weight;
-    for (size_t a = 0; a < nodes; a++) {
+    for (size_t a = 0; a < nodes && laplace != NULL; a++) {
       for (size_t b = 0; b < nodes; b++) {
         laplace[a * nodes + b] +=
             weight * (gradient[0][a] * gradient[0][b] + gradient[1][a] * gradient[1][b]);
