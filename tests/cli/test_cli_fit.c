@@ -1,5 +1,5 @@
 /* dea fit, as a user runs it: an example, its files, bad data. */
-// ctest: quick, heavy
+// ctest: slow
 #include "command.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Designs of the general form: the layout that is made of their parts, and what a bad one says. */
-// ctest: quick, heavy
+// ctest: slow
 #include "design_text.h"
 #include "failing_allocator.h"
 #include "model/model.h"

@@ -1,5 +1,5 @@
 /* What cannot be built is said at its place in the design, and nothing crashes or leaks. */
-// ctest: quick, heavy
+// ctest: slow
 #include "design_text.h"
 #include "fabricate/dxf_write.h"
 #include "fabricate/svg.h"

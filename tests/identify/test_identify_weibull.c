@@ -1,5 +1,5 @@
 /* identify: Weibull's law of breakdown against the equations of its maximum, coverage, scaling. */
-// ctest: quick, heavy
+// ctest: slow
 #include "context_fixture.h"
 #include "identify/weibull.h"
 #include "testing.h"

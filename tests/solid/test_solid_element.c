@@ -1,6 +1,6 @@
 /* What every kind of element must do, by registration (element_list.h): derivatives, rigid motions,
  * patch test, integrals, and the refusal of an inverted one. */
-// ctest: quick, heavy
+// ctest: slow
 #include "base/quadrature.h"
 #include "model/solid/element/element.h"
 #include "testing.h"

@@ -1,5 +1,5 @@
 /* dea studio as a program on the network sees it: what it refuses, and what it answers. */
-// ctest: quick, heavy
+// ctest: slow
 #include "cone_design.h"
 #include "studio_server.h"
 
