@@ -22,14 +22,20 @@ char *dea_path_join(struct dea_context *ctx, const char *directory, const char *
   return text.data;
 }
 
+/* false: no file can have such a long path. */
+static bool build_path(const char *directory, const char *name, char out[DEA_PATH_SIZE])
+{
+  const size_t n = strlen(directory);
+  const char *slash = n > 0 && directory[n - 1] != '/' ? "/" : "";
+  return snprintf(out, DEA_PATH_SIZE, "%s%s%s", directory, slash, name) < DEA_PATH_SIZE;
+}
+
 dea_status dea_path_build(struct dea_context *ctx, const char *directory, const char *name,
                           char out[DEA_PATH_SIZE])
 {
-  const size_t n = strlen(directory);
-  const int length = snprintf(out, DEA_PATH_SIZE, "%s%s%s", directory,
-                              n > 0 && directory[n - 1] != '/' ? "/" : "", name);
-  return length < DEA_PATH_SIZE ? DEA_OK
-                                : dea_fail(ctx, DEA_E_IO, "the path of '%.60s' is too long", name);
+  return build_path(directory, name, out)
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_IO, "the path of '%.60s' is too long", name);
 }
 
 dea_status dea_folder_create_temporary(struct dea_context *ctx, const char *word,
@@ -73,6 +79,12 @@ bool dea_path_exists(const char *path)
 {
   struct stat info;
   return lstat(path, &info) == 0;
+}
+
+bool dea_folder_has(const char *directory, const char *name)
+{
+  char path[DEA_PATH_SIZE];
+  return build_path(directory, name, path) && dea_path_exists(path);
 }
 
 bool dea_path_is_folder(const char *path)

@@ -40,22 +40,21 @@ static dea_status run(struct dea_cli *cli, void *user)
   if (request->finger < 0) {
     return cli_usage_error(cli, "--finger: a stiffness is not negative: %g N/m", request->finger);
   }
-  char *joined = dea_path_join(cli->ctx, dea_path_is_folder(first) ? first : "", "report.html");
-  const char *path = request->output != NULL ? request->output : joined;
+  char inside[DEA_PATH_SIZE];
+  DEA_TRY(cli->ctx,
+          dea_path_build(cli->ctx, dea_path_is_folder(first) ? first : "", "report.html", inside));
+  const char *path = request->output != NULL ? request->output : inside;
   const struct dea_report_options chosen = {.command = cli->command_line,
                                             .finger_N_per_m = request->finger,
                                             .measurement = request->measurement,
                                             .fit = request->fit,
                                             .explorer = request->explorer};
-  dea_status status = joined == NULL ? DEA_E_MEMORY : check_place(cli->ctx, path);
-  if (status == DEA_OK) {
-    status = dea_job_report(cli->ctx, request->runs.at, request->runs.count, &chosen, path);
-  }
-  if (status == DEA_OK && !cli->quiet) {
+  DEA_TRY(cli->ctx, check_place(cli->ctx, path));
+  DEA_TRY(cli->ctx, dea_job_report(cli->ctx, request->runs.at, request->runs.count, &chosen, path));
+  if (!cli->quiet) {
     fprintf(stderr, "the report is %s\n", path);
   }
-  dea_free(cli->ctx, joined);
-  return status;
+  return DEA_OK;
 }
 
 static const struct request defaults = {.finger = 500}; // N/m: an assumption that the page states

@@ -496,20 +496,18 @@ static dea_status print_tables(struct dea_context *ctx, const struct dea_result 
 }
 
 /* Names what the folder has got. */
-static void print_folder(struct dea_cli *cli, const struct run *run)
+static void print_folder(const struct run *run)
 {
   const char *folder = dea_job_folder(&run->job, run->result);
   if (folder == NULL) {
     return;
   }
-  char *figures = dea_path_join(cli->ctx, folder, DEA_FIGURE_FOLDER);
-  bool drawn = !run->job.no_figures && figures != NULL && dea_path_is_folder(figures);
+  bool drawn = !run->job.no_figures && dea_folder_has(folder, DEA_FIGURE_FOLDER "/");
   printf("\nresults: %s (summary.json, results.h5%s%s)\n", folder,
          dea_csv_has(run->result) ? ", CSV" : "", drawn ? ", " DEA_FIGURE_FOLDER "/" : "");
   if (strcmp(folder, run->job.folder) != 0) {
     printf("%s still has the results of before; --resume goes on\n", run->job.folder);
   }
-  dea_free(cli->ctx, figures);
 }
 
 /* What the solver of model 3d has done, if anything. */
@@ -545,7 +543,7 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
     }
     if (!cli->quiet &&
         (status == DEA_OK || status == DEA_E_TOOL)) { // without gnuplot the data are there
-      print_folder(cli, run);
+      print_folder(run);
     }
     if (cli->verbose) {
       print_solver(&run->result->provenance.solver);

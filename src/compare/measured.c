@@ -22,17 +22,10 @@ static const struct dea_csv_wanted profile_columns[PROFILE_COLUMNS] = {
 static const char *const history_keys[] = {"time_s", "voltage_V", "centre_z_m", "fibre_tip_z_m",
                                            "force_N"};
 
-/* True when folder/name is there. */
-static bool holds(const char *folder, const char *name)
-{
-  char path[4096];
-  int length = snprintf(path, sizeof path, "%s/%s", folder, name);
-  return length > 0 && (size_t)length < sizeof path && dea_path_exists(path);
-}
-
 bool dea_measured_is_folder(const char *path)
 {
-  return dea_path_is_folder(path) && holds(path, "measurement.csv") && !holds(path, "results.h5");
+  return dea_path_is_folder(path) && dea_folder_has(path, "measurement.csv") &&
+         !dea_folder_has(path, "results.h5");
 }
 
 /* Rows are out of order: a finding at the one that is, and DEA_E_IO. */
@@ -92,14 +85,9 @@ static dea_status read_rows(struct dea_context *ctx, const char *folder, const c
                             const struct dea_csv_wanted *wanted, size_t count,
                             struct dea_csv_columns *out)
 {
-  if (!holds(folder, name)) {
-    return DEA_OK;
-  }
-  char *path = dea_path_join(ctx, folder, name);
-  dea_status status =
-      path != NULL ? dea_csv_columns_read(ctx, path, wanted, count, NULL, out) : DEA_E_MEMORY;
-  dea_free(ctx, path);
-  return status;
+  char path[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, folder, name, path));
+  return dea_path_exists(path) ? dea_csv_columns_read(ctx, path, wanted, count, NULL, out) : DEA_OK;
 }
 
 static dea_status read_history(struct dea_context *ctx, const char *path, struct dea_measured *m)
@@ -131,10 +119,9 @@ static dea_status read_history(struct dea_context *ctx, const char *path, struct
 
 static dea_status read_folder(struct dea_context *ctx, const char *path, struct dea_measured *m)
 {
-  char *points = dea_path_join(ctx, path, "measurement.csv");
-  dea_status status = points != NULL ? dea_measurement_read(ctx, points, &m->points) : DEA_E_MEMORY;
-  dea_free(ctx, points);
-  DEA_TRY(ctx, status);
+  char points[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, path, "measurement.csv", points));
+  DEA_TRY(ctx, dea_measurement_read(ctx, points, &m->points));
   DEA_TRY(ctx,
           read_rows(ctx, path, "profiles.csv", profile_columns, PROFILE_COLUMNS, &m->profile_rows));
   DEA_TRY(ctx, part_profiles(ctx, m));

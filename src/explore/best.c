@@ -465,11 +465,11 @@ static dea_status fail_without(const struct work *w)
  * false: it does not. */
 static bool forget(const struct work *w, const char *name, const char *begin)
 {
-  char *path = dea_path_join(w->ctx, w->options->folder, name), head[32] = "";
+  char path[DEA_PATH_SIZE], head[32] = "";
   size_t length;
-  const bool written = path != NULL && dea_file_head(path, head, strlen(begin), &length) &&
+  const bool written = dea_path_build(w->ctx, w->options->folder, name, path) == DEA_OK &&
+                       dea_file_head(path, head, strlen(begin), &length) &&
                        strncmp(head, begin, strlen(begin)) == 0;
-  dea_free(w->ctx, path);
   if (written) {
     dea_path_forget(w->ctx, w->options->folder, name);
   }

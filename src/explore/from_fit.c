@@ -235,17 +235,14 @@ static dea_status read_all(struct work *w)
 
 static dea_status read_fit(struct work *w, json_t **out)
 {
-  static const char name[] = "fit.json";
-  char *bytes = NULL, *path = dea_path_beside(w->ctx, w->file->head.file, w->at->text);
+  char *bytes = NULL, *beside = dea_path_beside(w->ctx, w->file->head.file, w->at->text);
+  char path[DEA_PATH_SIZE];
   size_t count = 0;
-  if (path != NULL && !dea_text_ends_with(w->at->text, ".json")) {
-    char *folder = path;
-    path = dea_path_join(w->ctx, folder, name);
-    dea_free(w->ctx, folder);
-  }
-  dea_status status =
-      path != NULL ? dea_file_read(w->ctx, path, FILE_MAX, &bytes, &count) : DEA_E_MEMORY;
-  dea_free(w->ctx, path);
+  DEA_TRY_MEMORY(beside != NULL);
+  const bool is_file = dea_text_ends_with(w->at->text, ".json");
+  dea_status status = dea_path_build(w->ctx, beside, is_file ? "" : "fit.json", path);
+  dea_free(w->ctx, beside);
+  status = status == DEA_OK ? dea_file_read(w->ctx, path, FILE_MAX, &bytes, &count) : status;
   if (status == DEA_E_IO) {
     DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, w->at->location, "from_fit: %s",
                                     dea_context_message(w->ctx)));

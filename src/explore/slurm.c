@@ -43,13 +43,12 @@ static dea_status submit(struct dea_context *ctx, const char *folder, const char
   struct dea_program program;
   char said[DEA_PROGRAM_SAID], option[64];
   int number;
-  char *script = dea_path_join(ctx, folder, name);
-  DEA_TRY_MEMORY(script != NULL);
+  char script[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, folder, name, script));
   snprintf(option, sizeof option, "--dependency=afterany:%s", dependency);
   char *const with[] = {(char *)"sbatch", (char *)"--parsable", option, script, NULL};
   char *const without[] = {(char *)"sbatch", (char *)"--parsable", script, NULL};
   const int reason = dea_program_start(dependency[0] != '\0' ? with : without, ".", true, &program);
-  dea_free(ctx, script);
   if (reason != 0) {
     return dea_fail(ctx, DEA_E_TOOL, "sbatch, the program of Slurm, is not here: %s",
                     strerror(reason));

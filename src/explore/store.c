@@ -230,9 +230,9 @@ for_parts(struct dea_context *ctx, const char *folder,
   for (struct dirent *entry = readdir(directory); entry != NULL && status == DEA_OK;
        entry = readdir(directory)) {
     if (strncmp(entry->d_name, prefix, strlen(prefix)) == 0) {
-      char *path = dea_path_join(ctx, folder, entry->d_name);
-      status = path != NULL ? take(ctx, user, path) : DEA_E_MEMORY;
-      dea_free(ctx, path);
+      char path[DEA_PATH_SIZE];
+      status = dea_path_build(ctx, folder, entry->d_name, path);
+      status = status == DEA_OK ? take(ctx, user, path) : status;
     }
   }
   closedir(directory);

@@ -153,8 +153,8 @@ static dea_status write_h5(const struct work *w, const struct column *columns, s
 {
   struct h5 h;
   size_t rows = 0;
-  char *path = dea_path_join(w->ctx, w->folder, "cases.h5");
-  DEA_TRY_MEMORY(path != NULL);
+  char path[DEA_PATH_SIZE];
+  DEA_TRY(w->ctx, dea_path_build(w->ctx, w->folder, "cases.h5", path));
   for (size_t c = 0; c < w->plan->count; c++) {
     rows += w->plan->cases[c] != NULL ? 1U : 0U;
   }
@@ -171,7 +171,6 @@ static dea_status write_h5(const struct work *w, const struct column *columns, s
   dea_h5_close(group);
   dea_h5_file_write(&h, file);
   dea_h5_end(&h);
-  dea_free(w->ctx, path);
   return h.status;
 }
 

@@ -261,13 +261,12 @@ struct specimen {
 static dea_status read_part(struct dea_context *ctx, const struct dea_life_file *file,
                             const char *folder, struct dea_csv_columns *out)
 {
-  char *beside = dea_path_beside(ctx, file->head.file, folder);
-  char *path = beside != NULL ? dea_path_join(ctx, beside, "life.csv") : NULL;
-  dea_status status =
-      path != NULL ? dea_csv_columns_read(ctx, path, wanted, COLUMNS, NULL, out) : DEA_E_MEMORY;
-  dea_free(ctx, path);
+  char *beside = dea_path_beside(ctx, file->head.file, folder), path[DEA_PATH_SIZE];
+  DEA_TRY_MEMORY(beside != NULL);
+  const dea_status status = dea_path_build(ctx, beside, "life.csv", path);
   dea_free(ctx, beside);
-  return status;
+  DEA_TRY(ctx, status);
+  return dea_csv_columns_read(ctx, path, wanted, COLUMNS, NULL, out);
 }
 
 static double at(const struct dea_csv_columns *part, enum column column, size_t i)

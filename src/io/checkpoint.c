@@ -61,7 +61,7 @@ static dea_status write_pvd(struct dea_context *ctx, const char *directory, cons
   DEA_TRY_MEMORY(entries != NULL);
   for (size_t i = 0; i < curve->count; i++) {
     field_name(model, i, name);
-    if (dea_path_build(ctx, directory, name, path) == DEA_OK && dea_path_exists(path)) {
+    if (dea_folder_has(directory, name)) {
       entries[count].voltage_V = curve->points[i].voltage_V;
       snprintf(entries[count++].file, sizeof entries[0].file, "%.79s", name);
     }

@@ -190,14 +190,10 @@ static dea_status read_path(struct reading *r, const char *path)
   if (!dea_path_is_folder(path)) {
     return read_table(r, path);
   }
-  char *means = dea_path_join(r->ctx, path, "means.csv");
-  char *cycles = dea_path_join(r->ctx, path, "measurement.csv");
-  dea_status status = means != NULL && cycles != NULL
-                          ? read_table(r, dea_path_exists(means) ? means : cycles)
-                          : DEA_E_MEMORY;
-  dea_free(r->ctx, cycles);
-  dea_free(r->ctx, means);
-  return status;
+  char table[DEA_PATH_SIZE];
+  const char *name = dea_folder_has(path, "means.csv") ? "means.csv" : "measurement.csv";
+  DEA_TRY(r->ctx, dea_path_build(r->ctx, path, name, table));
+  return read_table(r, table);
 }
 
 dea_status dea_device_curves_read(struct dea_context *ctx, struct dea_device_fit *fit)

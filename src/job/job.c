@@ -23,21 +23,13 @@ static const char *working_folder(const struct dea_job *job)
   return job->part != NULL ? job->part : job->folder;
 }
 
-static bool has_file(struct dea_context *ctx, const char *folder, const char *name)
-{
-  char *path = dea_path_join(ctx, folder, name);
-  const bool there = path != NULL && dea_path_exists(path);
-  dea_free(ctx, path);
-  return there;
-}
-
 /* FOLDER.part where results are replaced, or where a run that did so is resumed. */
 static dea_status choose_part(struct dea_context *ctx, struct dea_job *job)
 {
   struct dea_text part = {.ctx = ctx};
   dea_text_add(&part, "%.*s.part", (int)dea_path_length(job->folder), job->folder);
   const bool failed = part.failed;
-  if (!failed && ((job->force && has_file(ctx, job->folder, results_file)) ||
+  if (!failed && ((job->force && dea_folder_has(job->folder, results_file)) ||
                   (job->resume && dea_path_is_folder(part.data)))) {
     job->part = part.data;
   } else {
@@ -258,7 +250,7 @@ dea_status dea_job_write(struct dea_context *ctx, struct dea_job *job,
   const dea_status status = dea_run_folder_write(ctx, result, working_folder(job), &options);
   if (status != DEA_OK && status != DEA_E_TOOL) { // without gnuplot the data are there
     job->status = job->status == DEA_OK ? status : job->status;
-    if (!has_file(ctx, working_folder(job), results_file)) {
+    if (!dea_folder_has(working_folder(job), results_file)) {
       char message[1024];
       snprintf(message, sizeof message, "%s", dea_context_message(ctx));
       discard(ctx, job);

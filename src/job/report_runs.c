@@ -47,9 +47,9 @@ static dea_status add_note(struct dea_context *ctx, struct dea_report_run *run, 
 static dea_status read_summary(struct dea_context *ctx, struct dea_report_run *out, bool *found)
 {
   *found = false;
-  char *path = dea_path_join(ctx, out->path, "summary.json"), *bytes = NULL;
+  char path[DEA_PATH_SIZE], *bytes = NULL;
   size_t length;
-  DEA_TRY_MEMORY(path != NULL);
+  DEA_TRY(ctx, dea_path_build(ctx, out->path, "summary.json", path));
   dea_status status = DEA_OK;
   if (dea_path_exists(path) && dea_file_read(ctx, path, SUMMARY_MAX, &bytes, &length) == DEA_OK) {
     json_t *root = json_loadb(bytes, length, 0, NULL);
@@ -63,7 +63,6 @@ static dea_status read_summary(struct dea_context *ctx, struct dea_report_run *o
   }
   dea_context_clear(ctx);
   dea_free(ctx, bytes);
-  dea_free(ctx, path);
   return status;
 }
 
@@ -245,11 +244,10 @@ static dea_status complete(struct dea_context *ctx, struct dea_result *result)
 dea_status dea_report_runs_explore(struct dea_context *ctx, const char *folder,
                                    struct dea_report_run runs[], size_t count, char **bytes)
 {
-  char *path = dea_path_join(ctx, folder, "emulator.json"), hash[65];
+  char path[DEA_PATH_SIZE], hash[65];
   size_t length, found = 0;
-  dea_status status =
-      path != NULL ? dea_file_read(ctx, path, SUMMARY_MAX, bytes, &length) : DEA_E_MEMORY;
-  dea_free(ctx, path);
+  DEA_TRY(ctx, dea_path_build(ctx, folder, "emulator.json", path));
+  dea_status status = dea_file_read(ctx, path, SUMMARY_MAX, bytes, &length);
   if (status != DEA_OK) {
     return status == DEA_E_MEMORY
                ? status

@@ -45,15 +45,13 @@ static size_t drawer_count(size_t figures)
 /* Moves a file of a folder into another one. */
 static dea_status move(struct dea_context *ctx, const char *from, const char *name, const char *to)
 {
-  char *path = dea_path_join(ctx, from, name), *target = dea_path_join(ctx, to, name);
-  dea_status status = path != NULL && target != NULL ? DEA_OK : DEA_E_MEMORY;
-  status = status == DEA_OK ? dea_path_check_target(ctx, target) : status;
-  if (status == DEA_OK && rename(path, target) != 0) {
-    status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", target, strerror(errno));
-  }
-  dea_free(ctx, path);
-  dea_free(ctx, target);
-  return status;
+  char path[DEA_PATH_SIZE], target[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, from, name, path));
+  DEA_TRY(ctx, dea_path_build(ctx, to, name, target));
+  DEA_TRY(ctx, dea_path_check_target(ctx, target));
+  return rename(path, target) == 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", target, strerror(errno));
 }
 
 /* The same of all its files. */
@@ -128,20 +126,16 @@ static dea_status draw(const struct dea_plot_folder *f, const char *drawing)
 /* The pictures take their names only when they are complete. */
 static dea_status draw_all(const struct dea_plot_folder *f)
 {
-  char name[40];
+  char name[40], drawing[DEA_PATH_SIZE];
   snprintf(name, sizeof name, ".drawing.%ld", (long)getpid());
-  char *drawing = dea_path_join(f->ctx, f->path, name);
-  DEA_TRY_MEMORY(drawing != NULL);
-  dea_status status = dea_folder_create(f->ctx, drawing);
-  if (status == DEA_OK) {
-    status = draw(f, drawing);
-    for (size_t i = 0; i < f->count && status == DEA_OK; i++) {
-      status = dea_picture_finish(f->ctx, drawing, f->path, f->names[i], f->format);
-    }
-    status = status == DEA_OK ? move_all(f->ctx, drawing, f->path) : status;
-    dea_folder_remove_temporary(drawing);
+  DEA_TRY(f->ctx, dea_path_build(f->ctx, f->path, name, drawing));
+  DEA_TRY(f->ctx, dea_folder_create(f->ctx, drawing));
+  dea_status status = draw(f, drawing);
+  for (size_t i = 0; i < f->count && status == DEA_OK; i++) {
+    status = dea_picture_finish(f->ctx, drawing, f->path, f->names[i], f->format);
   }
-  dea_free(f->ctx, drawing);
+  status = status == DEA_OK ? move_all(f->ctx, drawing, f->path) : status;
+  dea_folder_remove_temporary(drawing);
   return status;
 }
 

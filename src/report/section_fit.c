@@ -147,23 +147,19 @@ static dea_status add_figure(struct dea_report *report, const char *folder, cons
                              const char *what)
 {
   struct dea_text *out = &report->text;
-  char file[96], *bytes = NULL;
+  char file[96], path[DEA_PATH_SIZE], *bytes;
   size_t length;
   snprintf(file, sizeof file, "%.80s.svg", name);
-  char *path = dea_path_join(report->ctx, folder, file);
-  DEA_TRY_MEMORY(path != NULL);
-  dea_status status = DEA_OK;
-  if (dea_path_exists(path)) {
-    status = dea_file_read(report->ctx, path, FILE_MAX, &bytes, &length);
+  DEA_TRY(report->ctx, dea_path_build(report->ctx, folder, file, path));
+  if (!dea_path_exists(path)) {
+    return DEA_OK;
   }
-  if (status == DEA_OK && bytes != NULL) {
-    dea_html_add(out, "<figure><img alt=\"%s\" src=\"data:image/svg+xml;base64,", what);
-    dea_html_base64(out, bytes, length);
-    dea_html_add(out, "\"/><figcaption>%s</figcaption></figure>", what);
-  }
+  DEA_TRY(report->ctx, dea_file_read(report->ctx, path, FILE_MAX, &bytes, &length));
+  dea_html_add(out, "<figure><img alt=\"%s\" src=\"data:image/svg+xml;base64,", what);
+  dea_html_base64(out, bytes, length);
+  dea_html_add(out, "\"/><figcaption>%s</figcaption></figure>", what);
   dea_free(report->ctx, bytes);
-  dea_free(report->ctx, path);
-  return status;
+  return DEA_OK;
 }
 
 static dea_status add_figures(struct dea_report *report, const char *folder)
@@ -187,16 +183,13 @@ static dea_status add_figures(struct dea_report *report, const char *folder)
 dea_status dea_section_fit(struct dea_report *report)
 {
   const char *folder = report->options->fit;
-  char *bytes;
+  char path[DEA_PATH_SIZE], *bytes;
   size_t length;
   if (folder == NULL) {
     return DEA_OK;
   }
-  char *path = dea_path_join(report->ctx, folder, "fit.json");
-  dea_status status =
-      path != NULL ? dea_file_read(report->ctx, path, FILE_MAX, &bytes, &length) : DEA_E_MEMORY;
-  dea_free(report->ctx, path);
-  DEA_TRY(report->ctx, status);
+  DEA_TRY(report->ctx, dea_path_build(report->ctx, folder, "fit.json", path));
+  DEA_TRY(report->ctx, dea_file_read(report->ctx, path, FILE_MAX, &bytes, &length));
   json_t *root = json_loadb(bytes, length, 0, NULL);
   dea_free(report->ctx, bytes);
   if (!json_is_object(root) || !json_is_array(json_object_get(root, "parameters"))) {
@@ -207,7 +200,7 @@ dea_status dea_section_fit(struct dea_report *report)
   dea_section_begin(report, "fit", 0, "Fit to measurements");
   add_parameters(report, json_object_get(root, "parameters"));
   add_advice(&report->text, root);
-  status = add_figures(report, folder);
+  const dea_status status = add_figures(report, folder);
   add_correlations(report, root);
   add_facts(&report->text, root);
   dea_section_end(report);

@@ -105,7 +105,7 @@ static bool is_run(const struct dea_studio_exchange *w, const char *name)
 /* Adds the name of a file to a command, which must not take it for an option. */
 static void add_file(struct dea_studio_line *line, const char *name)
 {
-  char path[300];
+  char path[DEA_PATH_SIZE + 2];
   snprintf(path, sizeof path, "%s%s", name[0] == '-' ? "./" : "", name);
   dea_studio_line_add(line, path);
 }
@@ -271,14 +271,15 @@ static json_t *find_command(struct dea_studio_exchange *w, const struct dea_stud
   return json;
 }
 
-/* A name for a file in the scratch folder; owned by the caller. */
-static char *scratch_name(struct dea_studio_exchange *w, const char *ending)
+/* A path for a file in the scratch folder. */
+static dea_status build_scratch_path(struct dea_studio_exchange *w, const char *ending,
+                                     char out[DEA_PATH_SIZE])
 {
   char name[40];
   pthread_mutex_lock(&w->studio->write_lock);
   snprintf(name, sizeof name, "%u.%s", ++w->studio->scratch_count, ending);
   pthread_mutex_unlock(&w->studio->write_lock);
-  return dea_path_join(w->ctx, w->studio->scratch, name);
+  return dea_path_build(w->ctx, w->studio->scratch, name, out);
 }
 
 /* "dea check DESIGN --svg FILE", or of another command. */
@@ -298,9 +299,9 @@ static void query_file(struct dea_studio_exchange *w, const char *command, const
 {
   struct dea_studio_line line;
   struct dea_text by_hand = {.ctx = w->ctx};
-  char *file = scratch_name(w, ending), *bytes = NULL, name[280];
+  char file[DEA_PATH_SIZE], *bytes = NULL, name[280];
   size_t length;
-  if (file == NULL) {
+  if (build_scratch_path(w, ending, file) != DEA_OK) {
     respond_failure(w);
     return;
   }
@@ -313,7 +314,6 @@ static void query_file(struct dea_studio_exchange *w, const char *command, const
     dea_free(w->ctx, bytes);
   }
   unlink(file);
-  dea_free(w->ctx, file);
   snprintf(name, sizeof name, "%.*s.%s", (int)strcspn(shown, "."), shown, ending);
   build_line(&line, command, shown, option, name);
   dea_studio_line_show(&line, &by_hand);

@@ -293,11 +293,7 @@ static dea_status play(struct dea_cli *cli, const struct request *request,
 static dea_status export(struct dea_cli *cli, const struct request *request,
                          const struct dea_protocol *protocol)
 {
-  char *csv = dea_path_join(cli->ctx, request->folder, "waveform.csv");
-  DEA_TRY_MEMORY(csv != NULL);
-  bool there = dea_path_exists(csv);
-  dea_free(cli->ctx, csv);
-  if (there && !request->force) {
+  if (dea_folder_has(request->folder, "waveform.csv") && !request->force) {
     return dea_fail(cli->ctx, DEA_E_IO, "'%s' has a waveform.csv already; --force replaces it",
                     request->folder);
   }
