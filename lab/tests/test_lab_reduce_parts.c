@@ -105,7 +105,7 @@ TEST(test_a_list_grows)
   size_t *list = NULL;
   for (size_t n = 0; n < 1000; n++) {
     size_t before = capacity;
-    list = dea_list_grow(ctx, list, n, sizeof *list, &capacity);
+    assert_int_equal(dea_array_grow(ctx, &list, n, &capacity, sizeof *list), DEA_OK);
     assert_true(capacity > n && (before > n ? capacity == before : capacity >= 2 * before));
     list[n] = n;
   }

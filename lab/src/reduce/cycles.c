@@ -26,9 +26,7 @@ static dea_status add_run(struct dea_context *ctx, struct runs *runs, struct run
     runs->list[runs->count - 1].end = run.end;
     return DEA_OK;
   }
-  struct run *list = dea_list_grow(ctx, runs->list, runs->count, sizeof run, &runs->capacity);
-  DEA_TRY_MEMORY(list != NULL);
-  runs->list = list;
+  DEA_TRY(ctx, dea_array_grow(ctx, &runs->list, runs->count, &runs->capacity, sizeof run));
   runs->list[runs->count++] = run;
   return DEA_OK;
 }
@@ -81,9 +79,7 @@ static void set_rests(const struct finder *f, const struct runs *runs, size_t r,
 static dea_status add_part(struct dea_context *ctx, struct dea_cycle_list *out,
                            const struct dea_cycle_parts *part)
 {
-  void *list = dea_list_grow(ctx, out->parts, out->count, sizeof *part, &out->capacity);
-  DEA_TRY_MEMORY(list != NULL);
-  out->parts = list;
+  DEA_TRY(ctx, dea_array_grow(ctx, &out->parts, out->count, &out->capacity, sizeof *part));
   out->parts[out->count++] = *part;
   return DEA_OK;
 }

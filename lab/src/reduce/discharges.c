@@ -36,9 +36,7 @@ double dea_discharge_threshold(size_t samples)
 
 static dea_status add(struct search *s, struct dea_discharge discharge)
 {
-  void *list = dea_list_grow(s->ctx, s->found, s->count, sizeof discharge, &s->capacity);
-  DEA_TRY_MEMORY(list != NULL);
-  s->found = list;
+  DEA_TRY(s->ctx, dea_array_grow(s->ctx, &s->found, s->count, &s->capacity, sizeof discharge));
   s->found[s->count++] = discharge;
   return DEA_OK;
 }

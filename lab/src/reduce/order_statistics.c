@@ -112,15 +112,3 @@ void dea_running_median(const double *values, size_t count, size_t half, double 
     out[i] = n == 0 ? NAN : n % 2 == 1 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
   }
 }
-
-void *dea_list_grow(struct dea_context *ctx, void *list, size_t count, size_t size,
-                    size_t *capacity)
-{
-  if (count < *capacity) {
-    return list;
-  }
-  size_t more = *capacity > 0 ? 2 * *capacity : 32;
-  void *moved = dea_resize(ctx, list, more, size);
-  *capacity = moved != NULL ? more : *capacity;
-  return moved;
-}

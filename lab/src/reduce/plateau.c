@@ -134,12 +134,8 @@ dea_status dea_plateaus_find(struct dea_context *ctx, const struct dea_channel *
       at++;
     }
     if (is_flat(u, at, stop, tolerance_V)) {
-      struct dea_plateau *moved = dea_list_grow(ctx, found, n, sizeof *found, &capacity);
-      if (moved == NULL) {
-        dea_free(ctx, found);
-        return DEA_E_MEMORY;
-      }
-      found = moved;
+      dea_status status = dea_array_grow(ctx, &found, n, &capacity, sizeof *found);
+      DEA_TRY_ELSE(ctx, status, dea_free(ctx, found));
       found[n++] = (struct dea_plateau){at, stop, mean_of(u, at, stop)};
     }
     at = stop > at ? stop : at + 1;

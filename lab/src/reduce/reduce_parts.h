@@ -18,11 +18,6 @@ double dea_spread(double *values, size_t count, double centre);
 enum { DEA_RUNNING_HALF_MAX = 64 };
 void dea_running_median(const double *values, size_t count, size_t half, double *out);
 
-/* A list (NULL at first) with room for one more than `count` things; NULL when there is no memory,
- * and the old one stays. */
-void *dea_list_grow(struct dea_context *ctx, void *list, size_t count, size_t size,
-                    size_t *capacity);
-
 // filter.c ---------------------------------------------------------------------------------------
 
 /* First-order low-pass forward and backward: no delay, and an amplitude of 1/sqrt(2) at cutoff_Hz.
