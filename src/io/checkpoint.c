@@ -136,12 +136,6 @@ static dea_status restore(struct dea_context *ctx, void *user, const char *model
   return DEA_CHAIN(ctx, dea_state_file_read(ctx, model, wanted, path, out));
 }
 
-static void refuse(void *user)
-{
-  struct dea_keep *keep = user;
-  keep->refused = true;
-}
-
 /* The results before the state: it is the state that says how far a run came. */
 static dea_status keep_point(struct dea_context *ctx, void *user, const struct dea_result *result,
                              const struct dea_curve *curve, const struct dea_field_mesh *fields,
@@ -164,7 +158,7 @@ void dea_checkpoint_begin(struct dea_keep *keep, const char *directory)
 {
   *keep = (struct dea_keep){
       .directory = directory,
-      .sink = {.user = keep, .restore = restore, .refuse = refuse, .point = keep_point}};
+      .sink = {.user = keep, .restore = restore, .refused = &keep->refused, .point = keep_point}};
 }
 
 // Going on ---------------------------------------------------------------------------------------

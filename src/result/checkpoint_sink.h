@@ -12,8 +12,8 @@ struct dea_checkpoint_sink {
    * (dea_state_free_values), also after a failure. */
   dea_status (*restore)(struct dea_context *ctx, void *user, const char *model,
                         const struct dea_state *wanted, struct dea_state *out);
-  /* There is no going on from that state, so nothing of it may be written over. */
-  void (*refuse)(void *user);
+  /* Set where there is no going on from that state, so that nothing of it may be written over. */
+  bool *refused;
   /* After a point was added to a curve of the result. fields, state: at that point, lent; NULL:
    * not wanted, or the model has none. */
   dea_status (*point)(struct dea_context *ctx, void *user, const struct dea_result *result,
