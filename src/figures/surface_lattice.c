@@ -155,11 +155,7 @@ static struct dea_patch choose_lattice(const struct dea_field_mesh *mesh,
 /* Size of a piece of that many in the disc. */
 static double piece_size(const struct dea_field_mesh *mesh, size_t pieces)
 {
-  double radius = 0;
-  for (size_t p = 0; p < mesh->point_count; p++) {
-    radius = fmax(radius, hypot(mesh->X[3 * p], mesh->X[3 * p + 1]));
-  }
-  return radius * sqrt(acos(-1) / (double)(pieces > 0 ? pieces : 1));
+  return dea_field_mesh_radius_m(mesh) * sqrt(acos(-1) / (double)(pieces > 0 ? pieces : 1));
 }
 
 /* Lattices of the elements of one part, and the number of their points. */
@@ -279,10 +275,7 @@ static bool cell_has(const struct dea_field_mesh *mesh, const char *name, size_t
 
 static void list_edges(const struct dea_field_mesh *mesh, struct edge *to)
 {
-  double radius = 0;
-  for (size_t p = 0; p < mesh->point_count; p++) {
-    radius = fmax(radius, hypot(mesh->X[3 * p], mesh->X[3 * p + 1]));
-  }
+  const double radius = dea_field_mesh_radius_m(mesh);
   for (size_t b = 0, cell = 0; b < mesh->block_count; b++) {
     const struct dea_mesh_block *block = &mesh->blocks[b];
     int n = block->order, row = n + 1;

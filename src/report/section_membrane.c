@@ -114,10 +114,7 @@ static bool marks(const struct dea_mesh_field *field, size_t cell)
 /* Places and elements: those of the first step, which all share. */
 static void add_mesh(struct dea_text *out, const struct dea_field_mesh *mesh, uint16_t *words)
 {
-  double radius = 0;
-  for (size_t p = 0; p < mesh->point_count; p++) {
-    radius = fmax(radius, hypot(mesh->X[3 * p], mesh->X[3 * p + 1]));
-  }
+  const double radius = dea_field_mesh_radius_m(mesh);
   dea_text_add(out, "\"radius\":%.9g,\"fold\":%d,\"angle\":%.9g,\"points\":%zu,\"X\":[", radius,
                mesh->fold, mesh->symmetry_angle, mesh->point_count);
   for (size_t i = 0; i < 2; i++) {

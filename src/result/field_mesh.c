@@ -100,6 +100,15 @@ const struct dea_mesh_field *dea_field_mesh_find(const struct dea_field_mesh *me
   return NULL;
 }
 
+double dea_field_mesh_radius_m(const struct dea_field_mesh *mesh)
+{
+  double radius_m = 0;
+  for (size_t p = 0; p < mesh->point_count; p++) {
+    radius_m = fmax(radius_m, hypot(mesh->X[3 * p], mesh->X[3 * p + 1]));
+  }
+  return radius_m;
+}
+
 // Mirrored copies that make up the whole ---------------------------------------------------------
 
 size_t dea_copy_count(const struct dea_field_mesh *mesh)

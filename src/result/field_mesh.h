@@ -79,6 +79,8 @@ dea_status dea_field_mesh_add(struct dea_context *ctx, struct dea_field_mesh *me
 /* Field of that name, NULL when there is none; lent. */
 const struct dea_mesh_field *dea_field_mesh_find(const struct dea_field_mesh *mesh,
                                                  const char *name);
+/* Distance of the farthest point from the z axis. */
+double dea_field_mesh_radius_m(const struct dea_field_mesh *mesh);
 /* Points or cells that a field has values of. */
 size_t dea_mesh_field_count(const struct dea_field_mesh *mesh, const struct dea_mesh_field *field);
 
