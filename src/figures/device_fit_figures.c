@@ -17,18 +17,14 @@ struct place {
   size_t row;
 };
 
-static bool is_in_time(const struct dea_device_curve *curve)
-{
-  return curve->text->kind.value == DEA_DEVICE_TRANSIENT;
-}
-
 /* Whether the times of the transients of a quantity are best seen on a logarithmic axis. */
 static bool spans_decades(const struct dea_device_fit *fit, int column)
 {
   double first = INFINITY, last = 0;
   for (size_t c = 0; c < fit->curve_count; c++) {
     const struct dea_device_curve *curve = &fit->curves[c];
-    for (size_t i = 0; i < curve->rows && is_in_time(curve) && curve->column == column; i++) {
+    for (size_t i = 0;
+         i < curve->rows && dea_device_curve_in_time(curve) && curve->column == column; i++) {
       first = fmin(first, curve->time_s[i]);
       last = fmax(last, curve->time_s[i]);
     }
@@ -94,8 +90,8 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
   struct place *places = dea_alloc(ctx, curve->rows, sizeof *places);
   DEA_TRY_MEMORY(places != NULL);
   for (size_t i = 0; i < curve->rows; i++) {
-    places[i] =
-        (struct place){is_in_time(curve) ? curve->time_s[i] : 1e-3 * curve->voltage_V[i], i};
+    places[i] = (struct place){
+        dea_device_curve_in_time(curve) ? curve->time_s[i] : 1e-3 * curve->voltage_V[i], i};
   }
   qsort(places, curve->rows, sizeof *places, dea_rising);
   dea_status status = add_series(ctx, plot, curve, number, &look);
@@ -124,7 +120,7 @@ static dea_status draw(struct dea_plot_folder *folder, const struct dea_device_f
   plot->second_height = 0.5;
   dea_status status = DEA_OK;
   for (size_t c = 0; c < fit->curve_count && status == DEA_OK && number < SHOWN_MAX; c++) {
-    if (fit->curves[c].column == column && is_in_time(&fit->curves[c]) == in_time) {
+    if (fit->curves[c].column == column && dea_device_curve_in_time(&fit->curves[c]) == in_time) {
       status = add_curve(ctx, plot, &fit->curves[c], number++);
     }
   }

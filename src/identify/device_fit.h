@@ -46,6 +46,12 @@ struct dea_device_curve {
   double rms, largest; // misfit of the rows that were not cut; largest over the range of values
 };
 
+/* Whether it is over the time, not the voltage. */
+static inline bool dea_device_curve_in_time(const struct dea_device_curve *curve)
+{
+  return curve->text->kind.value == DEA_DEVICE_TRANSIENT;
+}
+
 /* Two parameters that the curves do not tell apart, and the measurement that would tell most. */
 struct dea_device_pair {
   size_t first, second;

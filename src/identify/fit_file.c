@@ -363,20 +363,12 @@ static dea_status check_order(struct work *w)
   return DEA_OK;
 }
 
-static double largest_stress(const struct work *w)
+/* The largest of the values of all rows, `least` at least. */
+static double largest_of(const struct work *w, const double *values, double least)
 {
-  double most = 0;
+  double most = least;
   for (size_t i = 0; i < w->raw->rows; i++) {
-    most = fmax(most, w->out->stress_Pa[i]);
-  }
-  return most;
-}
-
-static double largest_stretch(const struct work *w)
-{
-  double most = 1;
-  for (size_t i = 0; i < w->raw->rows; i++) {
-    most = fmax(most, w->out->stretch[i]);
+    most = fmax(most, values[i]);
   }
   return most;
 }
@@ -390,7 +382,7 @@ static bool is_ramped(const struct work *w)
 
 static dea_status check_zero(struct work *w)
 {
-  const double most = largest_stress(w);
+  const double most = largest_of(w, w->out->stress_Pa, 0);
   if (w->errors == 0 && is_ramped(w) && w->out->stretch[0] <= 1 &&
       w->out->stress_Pa[0] > fmax(early_share * most, 3 * w->out->std_Pa[0])) {
     FOUND(
@@ -454,7 +446,7 @@ static double named_stretch(const char *text)
 static dea_status check_reach(struct work *w)
 {
   const struct dea_fit_test *test = w->test;
-  const double most = largest_stretch(w);
+  const double most = largest_of(w, w->out->stretch, 1);
   double named = test->stretch.si;
   named = isnan(named) ? named_stretch(test->name.text) : named;
   named = isnan(named) ? named_stretch(w->raw->file) : named;
@@ -486,7 +478,8 @@ static void keep_row(struct dea_fit_series *out, size_t to, size_t from)
 static dea_status cut(struct work *w)
 {
   struct dea_fit_series *out = w->out;
-  const double most = largest_stress(w), reach = fmax(largest_stretch(w) - 1, 1e-9);
+  const double most = largest_of(w, w->out->stress_Pa, 0),
+               reach = fmax(largest_of(w, w->out->stretch, 1) - 1, 1e-9);
   size_t kept = 0;
   double from = INFINITY, to = 0;
   for (size_t i = 0; i < w->raw->rows; i++) {

@@ -23,11 +23,6 @@ struct reading {
   char sha256[65];
 };
 
-static bool is_in_time(const struct dea_device_curve *curve)
-{
-  return curve->text->kind.value == DEA_DEVICE_TRANSIENT;
-}
-
 /* Columns of the quantities that are wanted; what is none of the file is a finding. */
 static dea_status find_quantities(struct reading *r)
 {
@@ -124,7 +119,7 @@ static dea_status add_curve(struct reading *r, int column)
     curve->voltage_V[n] = from->points[i].voltage_V;
     curve->time_s[n] = from->points[i].time_s;
     curve->depth_m[n] = from->points[i].tip_depth_m;
-    if (is_in_time(curve) && isnan(curve->time_s[n])) {
+    if (dea_device_curve_in_time(curve) && isnan(curve->time_s[n])) {
       const struct dea_location location = {curve->file, r->table->line[i], 1};
       return dea_finding_add(
           r->ctx, DEA_ERROR, location,
@@ -226,7 +221,7 @@ static struct dea_device_group *find_group(struct dea_device_model *model,
 {
   const bool deep = is_held(curve) && !isnan(curve->depth_m[i]);
   const struct dea_device_group wanted = {.held = is_held(curve),
-                                          .in_time = is_in_time(curve),
+                                          .in_time = dea_device_curve_in_time(curve),
                                           .depth_m = deep ? curve->depth_m[i] : 0};
   for (size_t g = 0; g < model->group_count; g++) {
     const struct dea_device_group *group = &model->groups[g];
@@ -245,7 +240,7 @@ static struct dea_device_group *find_group(struct dea_device_model *model,
 /* Where a row stands in its group: a voltage, or a time. */
 static double place_of(const struct dea_device_curve *curve, size_t i)
 {
-  return is_in_time(curve) ? curve->time_s[i] : curve->voltage_V[i];
+  return dea_device_curve_in_time(curve) ? curve->time_s[i] : curve->voltage_V[i];
 }
 
 /* Voltages, or times, of one group, sorted, each once, at the end of model->voltage_V. */
