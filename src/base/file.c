@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -145,6 +146,12 @@ const char *dea_path_stem(const char *path, size_t *length)
   const char *name = dea_path_name(path), *dot = strrchr(name, '.');
   *length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
   return name;
+}
+
+bool dea_path_ends_with(const char *path, const char *ending)
+{
+  const size_t length = strlen(path), tail = strlen(ending);
+  return length >= tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
 char *dea_path_beside(struct dea_context *ctx, const char *file, const char *name)

@@ -26,6 +26,8 @@ bool dea_head_is_h5(const void *head, size_t length);
 const char *dea_path_name(const char *path);
 /* That name without its ending, which is `length` bytes of it. */
 const char *dea_path_stem(const char *path, size_t *length);
+/* Whether a name ends so, in letters of either case: ".dxf". */
+bool dea_path_ends_with(const char *path, const char *ending);
 /* Path of a file that is named in another one: it counts from that one's folder. Owned by the
  * caller (dea_free); NULL on failure. */
 char *dea_path_beside(struct dea_context *ctx, const char *file, const char *name);

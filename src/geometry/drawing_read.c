@@ -1,15 +1,5 @@
-#define _POSIX_C_SOURCE 200809L // strcasecmp
 #include "base/file.h"
 #include "geometry/drawing.h"
-
-#include <string.h>
-#include <strings.h>
-
-static bool ends_with(const char *file, const char *end)
-{
-  size_t n = strlen(file), m = strlen(end);
-  return n >= m && strcasecmp(file + n - m, end) == 0;
-}
 
 dea_status dea_drawing_read(struct dea_context *ctx, const char *file,
                             const struct dea_drawing_settings *settings, struct dea_drawing **out)
@@ -17,8 +7,8 @@ dea_status dea_drawing_read(struct dea_context *ctx, const char *file,
   char *bytes;
   size_t length;
   *out = NULL;
-  bool svg = ends_with(file, ".svg");
-  if (!svg && !ends_with(file, ".dxf")) {
+  bool svg = dea_path_ends_with(file, ".svg");
+  if (!svg && !dea_path_ends_with(file, ".dxf")) {
     return dea_fail(ctx, DEA_E_DESIGN, "'%s' is neither a .dxf nor an .svg file", file);
   }
   DEA_TRY(ctx, dea_file_read(ctx, file, DEA_DRAWING_BYTES_MAX, &bytes, &length));

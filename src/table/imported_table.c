@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <strings.h>
 
 /* Text of a file as UTF-8: what is none is taken for Latin-1. Control characters become blanks. */
 static char *copy_text(struct dea_context *ctx, const char *text, size_t length)
@@ -101,10 +100,4 @@ void dea_table_destroy(struct dea_context *ctx, struct dea_table *table)
     dea_free(ctx, table->note);
     dea_free(ctx, table);
   }
-}
-
-bool dea_name_ends(const char *file, const char *outcome)
-{
-  size_t n = strlen(file), m = strlen(outcome);
-  return n >= m && strcasecmp(file + n - m, outcome) == 0;
 }

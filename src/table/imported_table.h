@@ -44,7 +44,5 @@ dea_status dea_table_leave(struct dea_context *ctx, struct dea_table *table, str
 /* What the file says of itself, instead of what was there. */
 dea_status dea_table_note(struct dea_context *ctx, struct dea_table *table, const char *text,
                           size_t length);
-/* Whether a file's name ends so (".csv"; lower case), in letters of either case. */
-bool dea_name_ends(const char *file, const char *outcome);
 /* NULL is fine. */
 void dea_table_destroy(struct dea_context *ctx, struct dea_table *table);

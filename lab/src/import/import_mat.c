@@ -1,4 +1,5 @@
 /* MATLAB's .mat files. */
+#include "base/file.h"
 #include "base/h5.h"
 #include "base/module.h"
 #include "import/mat.h"
@@ -23,7 +24,7 @@ static bool recognise(const char *file, const unsigned char *head, size_t length
 {
   bool marked =
       length >= 128 && (memcmp(head + 126, "IM", 2) == 0 || memcmp(head + 126, "MI", 2) == 0);
-  return (marked && memcmp(head, "MATLAB ", 7) == 0) || dea_name_ends(file, ".mat");
+  return (marked && memcmp(head, "MATLAB ", 7) == 0) || dea_path_ends_with(file, ".mat");
 }
 
 static uint32_t integer(const unsigned char *at, bool big)

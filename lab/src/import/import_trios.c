@@ -3,6 +3,7 @@
  * an object a row with a value for each column's key; both may stand one level deeper, in
  * "Processed" (what people have edited) beside other sets. Source: the schema that its maker gives
  * away (TRIOSJSONExportSchema). */
+#include "base/file.h"
 #include "base/json.h"
 #include "import/import.h"
 
@@ -16,7 +17,7 @@ static bool recognise(const char *file, const unsigned char *head, size_t length
   while (i < length && head[i] != '\0' && strchr(blanks, head[i]) != NULL) {
     i++;
   }
-  return dea_name_ends(file, ".json") && i < length && head[i] == '{';
+  return dea_path_ends_with(file, ".json") && i < length && head[i] == '{';
 }
 
 /* The set of results with headers and rows; NULL: there is none. */

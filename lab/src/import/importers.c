@@ -91,9 +91,9 @@ static dea_status unknown_format(struct dea_context *ctx, const char *file,
                                  const unsigned char *head, size_t length)
 {
   const char *advice = "export it as CSV, .mat, .lvm or .tdms";
-  if (dea_name_ends(file, ".xlsx") || dea_name_ends(file, ".xls")) {
+  if (dea_path_ends_with(file, ".xlsx") || dea_path_ends_with(file, ".xls")) {
     advice = "save the sheet as CSV in Excel";
-  } else if (dea_name_ends(file, ".tdms_index")) {
+  } else if (dea_path_ends_with(file, ".tdms_index")) {
     advice = "give the .tdms file beside it";
   } else if (dea_head_is_h5(head, length)) {
     advice =
