@@ -157,11 +157,10 @@ static dea_status copy_one(struct dea_context *ctx, const struct cli_data_file *
   if (folder == NULL) {
     fwrite(bytes, 1, length, stdout);
   } else {
-    struct dea_text parent = {.ctx = ctx};
-    dea_text_add(&parent, "%s/%.*s", folder, (int)(dea_path_name(file->name) - file->name),
-                 file->name);
-    status = parent.failed ? DEA_E_MEMORY : dea_folder_create(ctx, dea_text_get(&parent));
-    dea_text_free(&parent);
+    char parent[DEA_PATH_SIZE];
+    status = dea_path_build(ctx, folder, file->name, parent);
+    parent[dea_path_name(parent) - parent] = '\0';
+    status = status == DEA_OK ? dea_folder_create(ctx, parent) : status;
     status = status == DEA_OK ? dea_path_create_folders(ctx, folder, file->name, force) : status;
     status =
         status == DEA_OK ? dea_file_write_into(ctx, folder, file->name, bytes, length) : status;
