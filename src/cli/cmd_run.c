@@ -343,11 +343,6 @@ static void print_model(const struct dea_context *ctx, const struct dea_result *
 
 enum { ROWS_SHOWN = 40, WIDTH_MAX = 36, DIGITS = 5, ERROR_DIGITS = 2 };
 
-static bool on_screen(const struct dea_result_column *column)
-{
-  return (column->hidden & DEA_IN_SCREEN) == 0 && column->kind != DEA_CELL_POINTS;
-}
-
 /* Whether some row has something in a column; without rows all have. */
 static bool has_any(const struct dea_result_table *table, size_t column)
 {
@@ -427,8 +422,7 @@ static dea_status print_rows(struct dea_context *ctx, const struct dea_result_ta
   int widths[DEA_RESULT_TABLE_COLUMNS_MAX][DEA_RESULT_TABLE_WIDTH_MAX];
   bool failed = false;
   for (size_t c = 0; c < table->type.column_count; c++) {
-    const bool shown = on_screen(&table->type.columns[c]) && has_any(table, c);
-    values[c] = shown ? dea_result_table_values(table, c) : 0;
+    values[c] = has_any(table, c) ? dea_result_table_shown(table, c, DEA_IN_SCREEN) : 0;
     for (size_t k = 0; k < values[c]; k++) {
       widths[c][k] = column_width(ctx, table, c, k, rows);
     }
@@ -462,7 +456,7 @@ static dea_status print_line(struct dea_context *ctx, const struct dea_result_ta
     const char *unit = column->display_unit != NULL ? column->display_unit : "1";
     struct dea_text cell = {.ctx = ctx};
     dea_result_table_cell_text(table, 0, c, 0, DIGITS, &cell);
-    if (on_screen(column) && cell.length > 0) {
+    if (dea_result_table_shown(table, c, DEA_IN_SCREEN) > 0 && cell.length > 0) {
       bool long_text = column->kind == DEA_CELL_TEXT && strchr(dea_text_get(&cell), '\n') != NULL;
       dea_text_add(&line, "%s%s %s%s%s",
                    line.length == 0 ? "  "

@@ -258,11 +258,6 @@ static dea_status write_variants(struct dea_context *ctx, const struct dea_resul
 
 // Tables of studies -------------------------------------------------------------------------------
 
-static bool in_csv(const struct dea_result_column *column)
-{
-  return (column->hidden & DEA_IN_CSV) == 0 && column->kind != DEA_CELL_POINTS;
-}
-
 /* "level 2 (kV)": the title of the number-th column of a list; 0: of a column that is none. */
 static void add_list_title(const struct dea_result_column *column, size_t number,
                            struct dea_text *out)
@@ -282,8 +277,7 @@ static void add_table_row(struct dea_text *text, const struct dea_result_table *
   bool first = true;
   for (size_t c = 0; c < table->type.column_count; c++) {
     const struct dea_result_column *column = &table->type.columns[c];
-    for (size_t k = 0; k < dea_result_table_values(table, c) && in_csv(column);
-         k++, first = false) {
+    for (size_t k = 0; k < dea_result_table_shown(table, c, DEA_IN_CSV); k++, first = false) {
       struct dea_text cell = {.ctx = text->ctx};
       if (row == SIZE_MAX) {
         add_list_title(column, dea_result_table_values(table, c) > 1 ? k + 1 : 0, &cell);

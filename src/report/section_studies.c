@@ -72,11 +72,6 @@ dea_status dea_section_figures(struct dea_report *report, const struct dea_repor
 
 // Tables -----------------------------------------------------------------------------------------
 
-static bool on_page(const struct dea_result_column *column)
-{
-  return (column->hidden & DEA_IN_SCREEN) == 0 && column->kind != DEA_CELL_POINTS;
-}
-
 static bool is_text(const struct dea_result_column *column)
 {
   return column->kind == DEA_CELL_TEXT || column->kind == DEA_CELL_QUANTITY;
@@ -87,7 +82,7 @@ static void add_header(struct dea_text *out, const struct dea_result_table *tabl
   for (size_t c = 0; c < table->type.column_count; c++) {
     const struct dea_result_column *column = &table->type.columns[c];
     struct dea_text title = {.ctx = out->ctx};
-    if (on_page(column)) {
+    if (dea_result_table_shown(table, c, DEA_IN_SCREEN) > 0) {
       dea_result_table_column_title(column, &title);
       dea_text_add(out, "<th scope=\"col\"%s", is_text(column) ? "" : " class=\"n\"");
       dea_html_add(out, " colspan=\"%zu\" title=\"%s\">%s</th>", dea_result_table_values(table, c),
@@ -126,8 +121,7 @@ static void add_rows(struct dea_report *report, const struct dea_result_table *t
   for (size_t row = 0; row < table->row_count; row++) {
     dea_text_add(out, "<tr>");
     for (size_t c = 0; c < table->type.column_count; c++) {
-      for (size_t k = 0; k < dea_result_table_values(table, c) && on_page(&table->type.columns[c]);
-           k++) {
+      for (size_t k = 0; k < dea_result_table_shown(table, c, DEA_IN_SCREEN); k++) {
         add_cell(out, table, row, c, k);
       }
     }
@@ -148,7 +142,8 @@ static void add_facts(struct dea_report *report, const struct dea_result_table *
       struct dea_text cell = {.ctx = report->ctx};
       dea_result_table_cell_text(table, 0, c, 0, DIGITS, &cell);
       bool lines = strchr(dea_text_get(&cell), '\n') != NULL;
-      bool wanted = on_page(column) && cell.length > 0 && lines == (words == 1);
+      bool wanted = dea_result_table_shown(table, c, DEA_IN_SCREEN) > 0 && cell.length > 0 &&
+                    lines == (words == 1);
       if (wanted && words == 1) {
         dea_html_element(out, "p class=\"verdict\"", dea_text_get(&cell));
       } else if (wanted) {

@@ -11,6 +11,13 @@ size_t dea_result_table_values(const struct dea_result_table *table, size_t colu
   return table->type.columns[column].list ? table->width : 1;
 }
 
+size_t dea_result_table_shown(const struct dea_result_table *table, size_t column, int where)
+{
+  const struct dea_result_column *c = &table->type.columns[column];
+  const bool hidden = (c->hidden & where) != 0 || c->kind == DEA_CELL_POINTS;
+  return hidden ? 0 : dea_result_table_values(table, column);
+}
+
 /* Place of a column's first value within a row. */
 static size_t column_offset(const struct dea_result_table *table, size_t column)
 {

@@ -101,6 +101,8 @@ const char *dea_result_table_text(const struct dea_result_table *table, size_t r
                                   const char *key);
 /* Values of a row that belong to a column: 1, or the width of lists. */
 size_t dea_result_table_values(const struct dea_result_table *table, size_t column);
+/* The same of one of DEA_IN_*: 0 of a column that is hidden there, and of a list of points. */
+size_t dea_result_table_shown(const struct dea_result_table *table, size_t column, int where);
 
 /* An empty table. width: of its lists, 0 to DEA_RESULT_TABLE_WIDTH_MAX. Freed with
  * dea_result_table_free. */
