@@ -16,6 +16,20 @@ json_t *dea_json_number(double value)
   return isfinite(value) ? json_real(value) : json_null();
 }
 
+json_t *dea_json_add_list(json_t *object, const char *key)
+{
+  json_t *list = json_array();
+  json_object_set_new(object, key, list);
+  return list;
+}
+
+json_t *dea_json_append(json_t *list)
+{
+  json_t *object = json_object();
+  json_array_append_new(list, object);
+  return object;
+}
+
 void dea_json_add_count(json_t *object, const char *key, size_t count)
 {
   json_object_set_new(object, key, json_integer((json_int_t)count));

@@ -8,6 +8,9 @@
 /* Sets a number unless it is not finite (JSON has no such number). */
 void dea_json_add(json_t *object, const char *key, double value);
 void dea_json_add_count(json_t *object, const char *key, size_t count);
+/* Sets a new list, and adds a new object to a list; lent. */
+json_t *dea_json_add_list(json_t *object, const char *key);
+json_t *dea_json_append(json_t *list);
 /* A number, or null where it is not finite. */
 json_t *dea_json_number(double value);
 /* Sets a text; NULL gives "". */

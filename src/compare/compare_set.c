@@ -438,13 +438,12 @@ json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance
     const struct dea_set_misfit *m = &set->misfits[i];
     if (m->kind == DEA_SET_VOLTAGE && (i == 0 || m->curve != set->misfits[i - 1].curve)) {
       char beside[DEA_LABEL_SIZE];
-      json_t *curve = json_object();
+      json_t *curve = dea_json_append(curves);
       dea_compare_set_beside(set, m->curve, beside);
       dea_json_add_text(curve, "a", set->curves[m->curve].name);
       dea_json_add_text(curve, "b", beside);
       quantities = json_array();
       json_object_set_new(curve, "quantities", quantities);
-      json_array_append_new(curves, curve);
     }
     json_array_append_new(m->kind == DEA_SET_VOLTAGE ? quantities : others[m->kind],
                           misfit_json(set, m, tolerance));

@@ -66,7 +66,7 @@ static void add_statistics_json(json_t *root, const struct dea_fit_core *core,
   const struct dea_lsq_statistics *statistics = &core->statistics;
   const bool known = core->scale_known;
   const size_t n = statistics->params;
-  json_t *rows = json_array();
+  json_t *rows = dea_json_add_list(root, "correlations");
   for (size_t j = 0; j < n; j++) {
     json_t *row = json_array();
     for (size_t l = 0; l < n; l++) {
@@ -74,7 +74,6 @@ static void add_statistics_json(json_t *root, const struct dea_fit_core *core,
     }
     json_array_append_new(rows, row);
   }
-  json_object_set_new(root, "correlations", rows);
   json_object_set_new(root, "uncertainty_given", json_boolean(known));
   dea_json_add(root, scatter_key, known ? NAN : core->scatter);
   dea_json_add(root, "chi_square", known ? core->least_squares.chi2 : NAN);
@@ -101,18 +100,16 @@ static void add_rows_json(json_t *object, const char *file, const char *sha256, 
 static void add_advice_json(json_t *object, const struct dea_fit_core *core, const char *next_key,
                             const char *word)
 {
-  json_t *combinations = json_array(), *measurements = json_array();
+  json_t *combinations = dea_json_add_list(object, "weak");
+  json_t *measurements = dea_json_add_list(object, next_key);
   for (size_t k = 0; k < core->weak_count; k++) {
     json_array_append_new(combinations, json_string(core->weak[k]));
   }
   for (size_t k = 0; k < core->next_count; k++) {
-    json_t *row = json_object();
+    json_t *row = dea_json_append(measurements);
     dea_json_add_text(row, word, core->next[k].what);
     dea_json_add(row, "error_bars_times", core->next[k].shrink);
-    json_array_append_new(measurements, row);
   }
-  json_object_set_new(object, "weak", combinations);
-  json_object_set_new(object, next_key, measurements);
 }
 
 /* Adds the rows of fit.csv, and NAME.yaml where a kind has one. */
@@ -354,25 +351,23 @@ static void add_rows(struct dea_text *out, const struct dea_fit_curve *curve)
   }
 }
 
-static json_t *values_json(const struct dea_fit *fit)
+static void add_values_json(json_t *root, const struct dea_fit *fit)
 {
-  json_t *array = json_array();
+  json_t *array = dea_json_add_list(root, "parameters");
   for (size_t j = 0; j < fit->model.count; j++) {
-    json_t *object = json_object();
+    json_t *object = dea_json_append(array);
     dea_json_add_text(object, "name", fit->model.params[j].name);
     dea_json_add_text(object, "unit", fit->model.params[j].unit);
     add_value_json(object, &fit->core.values[j]);
-    json_array_append_new(array, object);
   }
-  return array;
 }
 
-static json_t *laws_json(const struct dea_fit *fit)
+static void add_laws_json(json_t *root, const struct dea_fit *fit)
 {
-  json_t *array = json_array();
+  json_t *array = dea_json_add_list(root, "laws");
   for (size_t i = 0; i < fit->candidate_count; i++) {
     const struct dea_fit_candidate *candidate = &fit->candidates[i];
-    json_t *object = json_object();
+    json_t *object = dea_json_append(array);
     dea_json_add_text(object, "law", candidate->name);
     json_object_set_new(object, "failed", json_boolean(candidate->failed));
     if (candidate->failed) {
@@ -386,17 +381,15 @@ static json_t *laws_json(const struct dea_fit *fit)
       dea_json_add(object, "held_out_share", candidate->held_out_share);
       dea_json_add(object, "unstable_from", candidate->unstable_from);
     }
-    json_array_append_new(array, object);
   }
-  return array;
 }
 
-static json_t *tests_json(const struct dea_fit *fit)
+static void add_tests_json(json_t *root, const struct dea_fit *fit)
 {
-  json_t *array = json_array();
+  json_t *array = dea_json_add_list(root, "tests");
   for (size_t s = 0; s < fit->series_count; s++) {
     const struct dea_fit_curve *curve = &fit->curves[s];
-    json_t *object = json_object();
+    json_t *object = dea_json_append(array);
     dea_json_add_text(object, "name", curve->series->test->name.text);
     dea_json_add_text(object, "use", dea_fit_use_names[curve->series->test->use.value]);
     dea_json_add_text(object, "kind", dea_fit_kind_names[curve->series->test->kind.value]);
@@ -405,33 +398,29 @@ static json_t *tests_json(const struct dea_fit *fit)
     dea_json_add_count(object, "repeated_rows", curve->series->repeated);
     dea_json_add(object, "rms_Pa", curve->rms_Pa);
     dea_json_add(object, "largest_relative", curve->largest);
-    json_array_append_new(array, object);
   }
-  return array;
 }
 
 static json_t *advice_json(const struct dea_fit *fit)
 {
-  json_t *object = json_object(), *stability = json_array(), *spreads = json_array();
+  json_t *object = json_object();
   add_advice_json(object, &fit->core, "next_tests", "test");
+  json_t *stability = dea_json_add_list(object, "stability");
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
-    json_t *row = json_object();
+    json_t *row = dea_json_append(stability);
     dea_json_add_text(row, "mode", dea_coupon_mode_names[mode]);
     json_object_set_new(row, "measured", json_boolean(fit->stability[mode].measured));
     dea_json_add(row, "to_stretch", fit->stability[mode].to);
     dea_json_add(row, "unstable_from", fit->stability[mode].unstable_from);
-    json_array_append_new(stability, row);
   }
-  json_object_set_new(object, "stability", stability);
+  json_t *spreads = dea_json_add_list(object, "not_measured");
   for (size_t k = 0; k < fit->spread_count; k++) {
-    json_t *row = json_object();
+    json_t *row = dea_json_append(spreads);
     dea_json_add_text(row, "mode", dea_coupon_mode_names[fit->spreads[k].mode]);
     dea_json_add(row, "stretch", fit->spreads[k].stretch);
     dea_json_add_text(row, "other_law", fit->spreads[k].other);
     dea_json_add(row, "differs_by_share", fit->spreads[k].share);
-    json_array_append_new(spreads, row);
   }
-  json_object_set_new(object, "not_measured", spreads);
   return object;
 }
 
@@ -440,10 +429,10 @@ json_t *dea_fit_json(const struct dea_fit *fit, const char *command)
   json_t *root = begin_json(&fit->file->head, command);
   dea_json_add_text(root, "material", fit->file->head.name.text);
   dea_json_add_text(root, "law", fit->model.law->name);
-  json_object_set_new(root, "laws", laws_json(fit));
-  json_object_set_new(root, "parameters", values_json(fit));
+  add_laws_json(root, fit);
+  add_values_json(root, fit);
   add_statistics_json(root, &fit->core, "scatter_Pa");
-  json_object_set_new(root, "tests", tests_json(fit));
+  add_tests_json(root, fit);
   json_object_set_new(root, "advice", advice_json(fit));
   return root;
 }
@@ -488,12 +477,12 @@ static void add_device_rows(struct dea_text *out, const struct dea_device_curve 
   }
 }
 
-static json_t *device_values_json(const struct dea_device_fit *fit)
+static void add_device_values_json(json_t *root, const struct dea_device_fit *fit)
 {
-  json_t *array = json_array();
+  json_t *array = dea_json_add_list(root, "parameters");
   for (size_t j = 0; j < fit->param_count; j++) {
     const struct dea_device_param *param = &fit->params[j];
-    json_t *object = json_object();
+    json_t *object = dea_json_append(array);
     dea_json_add_text(object, "name", param->param.name);
     dea_json_add_text(object, "unit", param->param.unit);
     dea_json_add_text(object, "film", param->state[0] != '\0' ? param->state + 1 : "");
@@ -502,17 +491,15 @@ static json_t *device_values_json(const struct dea_device_fit *fit)
     dea_json_add(object, "prior", param->param.prior);
     dea_json_add(object, "prior_std", param->param.prior_std);
     dea_json_add_text(object, "prior_of", param->prior_of);
-    json_array_append_new(array, object);
   }
-  return array;
 }
 
-static json_t *curves_json(const struct dea_device_fit *fit)
+static void add_curves_json(json_t *root, const struct dea_device_fit *fit)
 {
-  json_t *array = json_array();
+  json_t *array = dea_json_add_list(root, "curves");
   for (size_t c = 0; c < fit->curve_count; c++) {
     const struct dea_device_curve *curve = &fit->curves[c];
-    json_t *object = json_object();
+    json_t *object = dea_json_append(array);
     dea_json_add_text(object, "name", curve->text->name.text);
     dea_json_add_text(object, "quantity", curve->quantity->key);
     dea_json_add_text(object, "unit", curve->quantity->si_unit);
@@ -522,25 +509,22 @@ static json_t *curves_json(const struct dea_device_fit *fit)
     dea_json_add(object, "slack_from_V", curve->slack_from_V);
     dea_json_add(object, "rms", curve->rms);
     dea_json_add(object, "largest_relative", curve->largest);
-    json_array_append_new(array, object);
   }
-  return array;
 }
 
 static json_t *device_advice_json(const struct dea_device_fit *fit)
 {
-  json_t *object = json_object(), *pairs = json_array();
+  json_t *object = json_object();
   add_advice_json(object, &fit->core, "next_measurements", "measurement");
+  json_t *pairs = dea_json_add_list(object, "not_told_apart");
   for (size_t k = 0; k < fit->pair_count; k++) {
     const struct dea_device_pair *pair = &fit->pairs[k];
-    json_t *row = json_object();
+    json_t *row = dea_json_append(pairs);
     dea_json_add_text(row, "first", fit->params[pair->first].param.name);
     dea_json_add_text(row, "second", fit->params[pair->second].param.name);
     dea_json_add(row, "correlation", pair->correlation);
     dea_json_add_text(row, "would_tell", pair->next);
-    json_array_append_new(pairs, row);
   }
-  json_object_set_new(object, "not_told_apart", pairs);
   return object;
 }
 
@@ -551,10 +535,10 @@ json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *comman
   dea_json_add_text(root, "design", fit->design_file);
   dea_json_add_text(root, "design_sha256", fit->design_sha256);
   dea_json_add_text(root, "model", fit->model);
-  json_object_set_new(root, "parameters", device_values_json(fit));
+  add_device_values_json(root, fit);
   add_statistics_json(root, &fit->core, "scatter");
   dea_json_add_count(root, "evaluations", fit->evaluations);
-  json_object_set_new(root, "curves", curves_json(fit));
+  add_curves_json(root, fit);
   json_object_set_new(root, "slack_settled", json_boolean(fit->settled));
   json_object_set_new(root, "advice", device_advice_json(fit));
   return root;
@@ -691,7 +675,7 @@ json_t *dea_breakdown_fit_json(const struct dea_breakdown_fit *fit, const char *
 {
   static const char *const keys[DEA_WEIBULL_PARAMS] = {"at_rest_V_per_m", "weibull_shape",
                                                        "exponent", "thickness_exponent"};
-  json_t *root = begin_json(&fit->file->head, command), *list = json_array();
+  json_t *root = begin_json(&fit->file->head, command);
   dea_json_add_text(root, "tests", fit->tests_file);
   dea_json_add_text(root, "tests_sha256", fit->sha256);
   dea_json_add_count(root, "films", fit->rows);
@@ -699,12 +683,12 @@ json_t *dea_breakdown_fit_json(const struct dea_breakdown_fit *fit, const char *
   dea_json_add(root, "log_likelihood", fit->fit.log_likelihood);
   dea_json_add(root, "reference_thickness_m", fit->data.thickness0_m);
   dea_json_add(root, "reference_area_m2", fit->data.area0_m2);
+  json_t *list = dea_json_add_list(root, "parameters");
   for (size_t k = 0; k < DEA_WEIBULL_PARAMS; k++) {
     json_t *object = weibull_json(&fit->fit, k, keys[k]);
     json_object_set_new(object, "fixed", json_boolean(fit->data.held[k]));
     json_array_append_new(list, object);
   }
-  json_object_set_new(root, "parameters", list);
   dea_json_add(root, "at_rest_low_95_V_per_m", fit->fit.low_95);
   dea_json_add(root, "at_rest_high_95_V_per_m", fit->fit.high_95);
   return root;
@@ -776,14 +760,14 @@ static dea_status fill_life(struct dea_context *ctx, const void *of, struct dea_
   return DEA_OK;
 }
 
-static json_t *specimens_json(const struct dea_life_fit *fit)
+static void add_specimens_json(json_t *root, const struct dea_life_fit *fit)
 {
   static const char *const keys[DEA_LIFE_CLOCKS] = {"cycles", "time_s", "under_voltage_s",
                                                     "charge_C"};
-  json_t *list = json_array();
+  json_t *list = dea_json_add_list(root, "lives");
   for (size_t i = 0; i < fit->rows; i++) {
     const struct dea_life *life = &fit->lives[i];
-    json_t *object = json_object();
+    json_t *object = dea_json_append(list);
     dea_json_add_text(object, "name", fit->file->specimens[i].name.text);
     dea_json_add_text(object, "end", dea_life_end_names[life->end]);
     for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
@@ -791,24 +775,22 @@ static json_t *specimens_json(const struct dea_life_fit *fit)
     }
     dea_json_add(object, "first_stroke", life->first_stroke);
     dea_json_add(object, "last_stroke", life->last_stroke);
-    json_array_append_new(list, object);
   }
-  return list;
 }
 
 json_t *dea_life_fit_json(const struct dea_life_fit *fit, const char *command)
 {
   static const char *const keys[2] = {"scale", "shape"};
   const struct dea_life_file *file = fit->file;
-  json_t *root = begin_json(&file->head, command), *list = json_array();
+  json_t *root = begin_json(&file->head, command);
   dea_json_add_text(root, "clock", dea_life_clock_names[file->clock.value]);
   dea_json_add_count(root, "specimens", fit->rows);
   dea_json_add_count(root, "failed", fit->failed);
-  json_object_set_new(root, "lives", specimens_json(fit));
+  add_specimens_json(root, fit);
+  json_t *list = dea_json_add_list(root, "parameters");
   for (size_t k = 0; k < 2 && fit->has_law; k++) {
     json_array_append_new(list, weibull_json(&fit->fit, k, keys[k]));
   }
-  json_object_set_new(root, "parameters", list);
   if (fit->has_law) {
     dea_json_add(root, "log_likelihood", fit->fit.log_likelihood);
     dea_json_add(root, "scale_low_95", fit->fit.low_95);

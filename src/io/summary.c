@@ -132,9 +132,8 @@ static void write_table(const struct dea_context *ctx, const struct dea_result *
   }
   json_t *list = json_array();
   for (size_t row = 0; row < table->row_count; row++) {
-    json_t *object = json_object();
+    json_t *object = dea_json_append(list);
     write_row(ctx, result, table, row, object);
-    json_array_append_new(list, object);
   }
   json_object_set_new(parent, key, list);
 }

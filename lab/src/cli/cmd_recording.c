@@ -227,13 +227,12 @@ static void print_json(const struct dea_recording *recording)
   for (size_t i = 0; i < recording->event_count; i++) {
     const struct dea_recorded_event *event = &recording->events[i];
     char text[DEA_NOTICED_TEXT_SIZE];
-    json_t *object = json_object();
+    json_t *object = dea_json_append(events);
     dea_noticed_text(event, recording->channels[event->channel].name, text);
     dea_json_add(object, "time_s", event->time_s);
     dea_json_add_text(object, "text", text);
     dea_json_add(object, "value", event->value);
     dea_json_add(object, "limit", event->limit);
-    json_array_append_new(events, object);
   }
   json_object_set_new(json, "events", events);
   dea_json_add_text(json, "design_name", recording->design_name);
