@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
@@ -91,6 +92,25 @@ bool dea_path_is_folder(const char *path)
 {
   struct stat info;
   return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+dea_status dea_folder_visit(struct dea_context *ctx, const char *directory,
+                            dea_folder_visitor *visit, void *user)
+{
+  dea_status status = DEA_OK;
+  DIR *folder = opendir(directory);
+  for (const struct dirent *entry;
+       folder != NULL && status == DEA_OK && (entry = readdir(folder)) != NULL;) {
+    char path[DEA_PATH_SIZE];
+    if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0) {
+      status = dea_path_build(ctx, directory, entry->d_name, path);
+      status = status == DEA_OK ? visit(ctx, user, entry->d_name, path) : status;
+    }
+  }
+  if (folder != NULL) {
+    closedir(folder);
+  }
+  return status;
 }
 
 dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const char *name)

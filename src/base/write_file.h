@@ -26,6 +26,12 @@ bool dea_folder_has(const char *directory, const char *name);
 /* Length of a path without the slashes at its end; "/" keeps its own. */
 size_t dea_path_length(const char *path);
 bool dea_path_is_folder(const char *path);
+/* Calls `visit` with the name and the path of all that is in a folder, up to a failure; of one that
+ * is not there with nothing. */
+typedef dea_status dea_folder_visitor(struct dea_context *ctx, void *user, const char *name,
+                                      const char *path);
+dea_status dea_folder_visit(struct dea_context *ctx, const char *directory,
+                            dea_folder_visitor *visit, void *user);
 /* DEA_E_IO, which says how to go on, where something of that name is in the folder. */
 dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const char *name);
 /* The same of a file, which `force` removes instead; a folder of that name stays. */

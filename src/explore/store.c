@@ -6,7 +6,6 @@
 #include "base/text.h"
 #include "base/write_file.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -217,32 +216,18 @@ static dea_status read_lines(struct dea_store *store, const char *path, char *by
   return status;
 }
 
-/* Calls take with the path of every part in a folder. */
-static dea_status
-for_parts(struct dea_context *ctx, const char *folder,
-          dea_status (*take)(struct dea_context *ctx, void *user, const char *path), void *user)
+static bool is_part(const char *name)
 {
-  dea_status status = DEA_OK;
-  DIR *directory = opendir(folder);
-  if (directory == NULL) {
-    return DEA_OK;
-  }
-  for (struct dirent *entry = readdir(directory); entry != NULL && status == DEA_OK;
-       entry = readdir(directory)) {
-    if (strncmp(entry->d_name, prefix, strlen(prefix)) == 0) {
-      char path[DEA_PATH_SIZE];
-      status = dea_path_build(ctx, folder, entry->d_name, path);
-      status = status == DEA_OK ? take(ctx, user, path) : status;
-    }
-  }
-  closedir(directory);
-  return status;
+  return strncmp(name, prefix, strlen(prefix)) == 0;
 }
 
-static dea_status read_part(struct dea_context *ctx, void *user, const char *path)
+static dea_status read_part(struct dea_context *ctx, void *user, const char *name, const char *path)
 {
   char *bytes;
   size_t length;
+  if (!is_part(name)) {
+    return DEA_OK;
+  }
   DEA_TRY(ctx, dea_file_read(ctx, path, FILE_MAX_BYTES, &bytes, &length));
   dea_status status = read_lines(user, path, bytes);
   dea_free(ctx, bytes);
@@ -329,7 +314,7 @@ static dea_status open_all(struct dea_store *store, const char *folder,
   if (shard != NULL) {
     DEA_TRY(store->ctx, open_part(store, folder, shard)); // before the others are read
   }
-  DEA_TRY(store->ctx, for_parts(store->ctx, folder, read_part, store));
+  DEA_TRY(store->ctx, dea_folder_visit(store->ctx, folder, read_part, store));
   return shard != NULL ? mend_part(store) : DEA_OK;
 }
 
@@ -370,9 +355,13 @@ void dea_store_close(struct dea_store *store)
 }
 
 /* Removes a part that nobody writes to: what they compute would be lost. */
-static dea_status remove_part(struct dea_context *ctx, void *user, const char *path)
+static dea_status remove_part(struct dea_context *ctx, void *user, const char *name,
+                              const char *path)
 {
   (void)user;
+  if (!is_part(name)) {
+    return DEA_OK;
+  }
   const int file = open(path, O_RDWR | O_CLOEXEC);
   const bool used = file >= 0 && !lock_part(file);
   const bool removed = !used && unlink(path) == 0;
@@ -387,7 +376,7 @@ static dea_status remove_part(struct dea_context *ctx, void *user, const char *p
 
 dea_status dea_store_remove(struct dea_context *ctx, const char *folder)
 {
-  return for_parts(ctx, folder, remove_part, NULL);
+  return dea_folder_visit(ctx, folder, remove_part, NULL);
 }
 
 dea_status dea_store_add(struct dea_store *store, const struct dea_case *done)

@@ -8,7 +8,6 @@
 #include "io/results_h5.h"
 #include "io/summary.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -72,28 +71,25 @@ bool dea_run_folder_is_of(struct dea_context *ctx, const char *directory,
   return same;
 }
 
+static dea_status move_all(struct dea_context *ctx, const char *from, const char *to);
+
+static dea_status move(struct dea_context *ctx, void *user, const char *name, const char *old)
+{
+  const char *const *to = user;
+  char new[DEA_PATH_SIZE];
+  DEA_TRY(ctx, dea_path_build(ctx, *to, name, new));
+  if (rename(old, new) == 0) {
+    return DEA_OK;
+  }
+  return dea_path_is_folder(old) && dea_path_is_folder(new)
+             ? move_all(ctx, old, new)
+             : dea_fail(ctx, DEA_E_IO, "cannot move %s to %s: %s", old, new, strerror(errno));
+}
+
 /* All that is in a folder into another one, and folders that are in both likewise. */
 static dea_status move_all(struct dea_context *ctx, const char *from, const char *to)
 {
-  dea_status status = DEA_OK;
-  DIR *folder = opendir(from);
-  for (const struct dirent *e;
-       folder != NULL && status == DEA_OK && (e = readdir(folder)) != NULL;) {
-    if (strcmp(e->d_name, ".") == 0 || strcmp(e->d_name, "..") == 0) {
-      continue;
-    }
-    char old[DEA_PATH_SIZE], new[DEA_PATH_SIZE];
-    status = dea_path_build(ctx, from, e->d_name, old);
-    status = status == DEA_OK ? dea_path_build(ctx, to, e->d_name, new) : status;
-    if (status == DEA_OK && rename(old, new) != 0) {
-      status = dea_path_is_folder(old) && dea_path_is_folder(new)
-                   ? move_all(ctx, old, new)
-                   : dea_fail(ctx, DEA_E_IO, "cannot move %s to %s: %s", old, new, strerror(errno));
-    }
-  }
-  if (folder != NULL) {
-    closedir(folder);
-  }
+  dea_status status = dea_folder_visit(ctx, from, move, &to);
   rmdir(from);
   return status;
 }

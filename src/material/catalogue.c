@@ -1,12 +1,11 @@
-#define _POSIX_C_SOURCE 200809L // opendir
 #include "material/catalogue.h"
 
 #include "base/file.h"
 #include "base/file_kind.h"
+#include "base/write_file.h"
 #include "material/branch.h"
 #include "material/plane.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -56,50 +55,45 @@ static int compare_names(const void *a, const void *b)
   return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-static dea_status add_name(struct dea_context *ctx, const char **names, size_t *count,
-                           const char *file)
+struct names {
+  const char **at;
+  size_t count;
+};
+
+static dea_status add_name(struct dea_context *ctx, void *user, const char *file, const char *path)
 {
+  struct names *names = user;
   size_t length = stem_length(file);
-  if (length == 0 || length >= DEA_NAME_SIZE || *count == NAMES_MAX) {
+  (void)path;
+  if (length == 0 || length >= DEA_NAME_SIZE || names->count == NAMES_MAX) {
     return DEA_OK;
   }
   char name[DEA_NAME_SIZE];
   snprintf(name, sizeof name, "%.*s", (int)length, file);
   const char *kept = dea_intern(ctx, name);
   DEA_TRY_MEMORY(kept != NULL);
-  for (size_t i = 0; i < *count; i++) {
-    if (names[i] == kept) {
+  for (size_t i = 0; i < names->count; i++) {
+    if (names->at[i] == kept) {
       return DEA_OK;
     }
   }
-  names[(*count)++] = kept;
+  names->at[names->count++] = kept;
   return DEA_OK;
 }
 
 dea_status dea_catalogue_names(struct dea_context *ctx, const char ***names, size_t *count)
 {
   struct directories list;
+  struct names all = {dea_alloc(ctx, NAMES_MAX, sizeof *all.at), 0};
   find_directories(&list);
-  *count = 0;
-  *names = dea_alloc(ctx, NAMES_MAX, sizeof **names);
-  DEA_TRY_MEMORY(*names != NULL);
-  dea_status status = DEA_OK;
-  for (size_t i = 0; i < list.count && status == DEA_OK; i++) {
-    DIR *directory = opendir(list.path[i]);
-    if (directory == NULL) {
-      continue; // one that does not exist holds no materials
-    }
-    for (struct dirent *entry; status == DEA_OK && (entry = readdir(directory)) != NULL;) {
-      status = add_name(ctx, *names, count, entry->d_name);
-    }
-    closedir(directory);
+  *names = NULL;
+  DEA_TRY_MEMORY(all.at != NULL);
+  for (size_t i = 0; i < list.count; i++) { // one that does not exist holds no materials
+    DEA_TRY_ELSE(ctx, dea_folder_visit(ctx, list.path[i], add_name, &all), dea_free(ctx, all.at));
   }
-  if (status != DEA_OK) {
-    dea_free(ctx, *names);
-    *names = NULL;
-    return status;
-  }
-  qsort(*names, *count, sizeof **names, compare_names);
+  qsort(all.at, all.count, sizeof *all.at, compare_names);
+  *names = all.at;
+  *count = all.count;
   return DEA_OK;
 }
 

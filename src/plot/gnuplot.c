@@ -8,7 +8,6 @@
 #include "base/write_file.h"
 #include "plot/finish.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -42,33 +41,19 @@ static size_t drawer_count(size_t figures)
   return wanted < most ? wanted : most;
 }
 
-/* Moves a file of a folder into another one. */
-static dea_status move(struct dea_context *ctx, const char *from, const char *name, const char *to)
+/* Moves a picture into the folder of the figures. */
+static dea_status move(struct dea_context *ctx, void *user, const char *name, const char *path)
 {
-  char path[DEA_PATH_SIZE], target[DEA_PATH_SIZE];
-  DEA_TRY(ctx, dea_path_build(ctx, from, name, path));
-  DEA_TRY(ctx, dea_path_build(ctx, to, name, target));
+  const struct dea_plot_folder *f = user;
+  char target[DEA_PATH_SIZE];
+  if (name[0] == '.') {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_path_build(ctx, f->path, name, target));
   DEA_TRY(ctx, dea_path_check_target(ctx, target));
   return rename(path, target) == 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", target, strerror(errno));
-}
-
-/* The same of all its files. */
-static dea_status move_all(struct dea_context *ctx, const char *from, const char *to)
-{
-  dea_status status = DEA_OK;
-  DIR *folder = opendir(from);
-  for (struct dirent *entry;
-       folder != NULL && status == DEA_OK && (entry = readdir(folder)) != NULL;) {
-    if (entry->d_name[0] != '.') {
-      status = move(ctx, from, entry->d_name, to);
-    }
-  }
-  if (folder != NULL) {
-    closedir(folder);
-  }
-  return status;
 }
 
 /* Starts a gnuplot for the figures first, first + stride, ... */
@@ -124,7 +109,7 @@ static dea_status draw(const struct dea_plot_folder *f, const char *drawing)
 }
 
 /* The pictures take their names only when they are complete. */
-static dea_status draw_all(const struct dea_plot_folder *f)
+static dea_status draw_all(struct dea_plot_folder *f)
 {
   char name[40], drawing[DEA_PATH_SIZE];
   snprintf(name, sizeof name, ".drawing.%ld", (long)getpid());
@@ -134,7 +119,7 @@ static dea_status draw_all(const struct dea_plot_folder *f)
   for (size_t i = 0; i < f->count && status == DEA_OK; i++) {
     status = dea_picture_finish(f->ctx, drawing, f->path, f->names[i], f->format);
   }
-  status = status == DEA_OK ? move_all(f->ctx, drawing, f->path) : status;
+  status = status == DEA_OK ? dea_folder_visit(f->ctx, drawing, move, f) : status;
   dea_folder_remove_temporary(drawing);
   return status;
 }
