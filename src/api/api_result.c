@@ -445,8 +445,7 @@ static void add_svg(struct dea_text *out, const char *fragment)
                "viewBox=\"0 0 %.0f %.0f\"><style>%s</style>"
                "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n%s</svg>\n",
                width + 2 * MARGIN, y, width + 2 * MARGIN, y, style, dea_text_get(&inside));
-  out->failed = out->failed || inside.failed;
-  dea_text_free(&inside);
+  dea_text_free_in(&inside, out);
 }
 
 /* Draws a figure into svg; nothing when it has nothing to show. */

@@ -83,8 +83,7 @@ static dea_status define_unit(struct maker *maker, const char *unit, const char 
     json_object_set_new(maker->units, name,
                         json_pack("{s:s, s:s}", "type", "string", "pattern", pattern.data));
   }
-  dea_text_free(&pattern);
-  return pattern.failed ? DEA_E_MEMORY : DEA_OK;
+  return dea_text_free(&pattern);
 }
 
 /* Pattern of what a limit at 0 says of a number's first signs, "" for nothing: 0 degC is above. */

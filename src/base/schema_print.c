@@ -87,7 +87,6 @@ static void walk(const struct dea_record *record, const char *path, print_fn pri
     struct dea_text inner = {.ctx = out->ctx};
     dea_text_add(&inner, "%s%s%s%s", path, path[0] != '\0' ? "." : "", field->key,
                  field->list_max > 0 && dea_field_has_record(field) ? "[]" : "");
-    out->failed = out->failed || inner.failed;
     print(record, field, dea_text_get(&inner), out);
     if (dea_field_has_record(field)) {
       walk(field->record, dea_text_get(&inner), print, out);
@@ -96,11 +95,10 @@ static void walk(const struct dea_record *record, const char *path, print_fn pri
     for (size_t k = 0; listed && field->kinds[k] != NULL; k++) {
       struct dea_text kind = {.ctx = out->ctx};
       dea_text_add(&kind, "%s(%s)", dea_text_get(&inner), field->kinds[k]->name);
-      out->failed = out->failed || kind.failed;
       walk(field->kinds[k], dea_text_get(&kind), print, out);
-      dea_text_free(&kind);
+      dea_text_free_in(&kind, out);
     }
-    dea_text_free(&inner);
+    dea_text_free_in(&inner, out);
   }
 }
 

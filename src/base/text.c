@@ -1,4 +1,4 @@
-#define _GNU_SOURCE // newlocale, strtod_l
+#define _GNU_SOURCE // newlocale, uselocale, strtod_l
 #include "base/text.h"
 
 #include <ctype.h>
@@ -29,6 +29,8 @@ void dea_text_add(struct dea_text *text, const char *format, ...)
 {
   va_list args, again;
   size_t capacity = text->capacity - text->length;
+  const locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0); // there already
+  const locale_t before = uselocale(c_locale);
   va_start(args, format);
   va_copy(again, args);
   int needed = vsnprintf(capacity > 0 ? text->data + text->length : NULL, capacity, format, args);
@@ -44,6 +46,8 @@ void dea_text_add(struct dea_text *text, const char *format, ...)
     text->data[text->length] = '\0';
   }
   va_end(again);
+  uselocale(before);
+  freelocale(c_locale);
 }
 
 void dea_text_add_bytes(struct dea_text *text, const void *bytes, size_t length)
@@ -62,11 +66,17 @@ const char *dea_text_get(const struct dea_text *text)
   return text->data != NULL ? text->data : "";
 }
 
-void dea_text_free(struct dea_text *text)
+dea_status dea_text_free(struct dea_text *text)
 {
   dea_free(text->ctx, text->data);
   text->data = NULL;
   text->length = text->capacity = 0;
+  return text->failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+void dea_text_free_in(struct dea_text *text, struct dea_text *outer)
+{
+  outer->failed |= dea_text_free(text) != DEA_OK;
 }
 
 size_t dea_letter_read(const char *text, unsigned *code)
@@ -224,14 +234,9 @@ dea_status dea_unknown_name(struct dea_context *ctx, const char *what, const cha
 double dea_text_to_double(const char *text, const char **end)
 {
   char *stop = NULL;
-  double value;
-  locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
-  if (c_locale == (locale_t)0) {
-    value = strtod(text, &stop);
-  } else {
-    value = strtod_l(text, &stop, c_locale);
-    freelocale(c_locale);
-  }
+  const locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+  const double value = strtod_l(text, &stop, c_locale);
+  freelocale(c_locale);
   *end = stop;
   return value;
 }

@@ -12,12 +12,16 @@ struct dea_text {
   bool failed;
 };
 
+/* Numbers have a decimal point whatever the program's locale. */
 void dea_text_add(struct dea_text *text, const char *format, ...) DEA_PRINTF(2, 3);
 /* The same of any bytes, zeros too; a text's end stays behind them. */
 void dea_text_add_bytes(struct dea_text *text, const void *bytes, size_t length);
 /* The text so far, "" if nothing was added; lent until the next change. */
 const char *dea_text_get(const struct dea_text *text);
-void dea_text_free(struct dea_text *text);
+/* Frees it; DEA_E_MEMORY where an append has failed. */
+dea_status dea_text_free(struct dea_text *text);
+/* The same of one that has gone into another text, which then has failed too. */
+void dea_text_free_in(struct dea_text *text, struct dea_text *outer);
 
 /* First letter of UTF-8 text into *code, and the bytes that it takes: 0 (and code 0xfffd) where no
  * letter is: a stray or missing byte, one written longer than need be, a surrogate, beyond

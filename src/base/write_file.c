@@ -271,17 +271,22 @@ dea_status dea_file_write_into(struct dea_context *ctx, const char *directory, c
   return dea_file_write(ctx, path, bytes, length);
 }
 
-dea_status dea_text_write_path(struct dea_context *ctx, const struct dea_text *text,
-                               const char *path)
+dea_status dea_text_write_path(struct dea_context *ctx, struct dea_text *text, const char *path)
 {
-  return text->failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(text), text->length);
+  const dea_status status =
+      text->failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(text), text->length);
+  dea_text_free(text);
+  return status;
 }
 
-dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
-                          const char *directory, const char *name)
+dea_status dea_text_write(struct dea_context *ctx, struct dea_text *text, const char *directory,
+                          const char *name)
 {
-  return text->failed ? DEA_E_MEMORY
-                      : dea_file_write_into(ctx, directory, name, dea_text_get(text), text->length);
+  const dea_status status =
+      text->failed ? DEA_E_MEMORY
+                   : dea_file_write_into(ctx, directory, name, dea_text_get(text), text->length);
+  dea_text_free(text);
+  return status;
 }
 
 dea_status dea_text_file_write(struct dea_context *ctx, const char *directory, const char *name,

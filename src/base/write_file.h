@@ -56,16 +56,15 @@ dea_status dea_file_write_into(struct dea_context *ctx, const char *directory, c
  * name, or removing it when that fails. */
 char *dea_partial_name(struct dea_context *ctx, const char *path);
 dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path);
-/* The text of *text as a file, the second as directory/name; DEA_E_MEMORY for a text with a failed
- * append. */
-dea_status dea_text_write_path(struct dea_context *ctx, const struct dea_text *text,
-                               const char *path);
-dea_status dea_text_write(struct dea_context *ctx, const struct dea_text *text,
-                          const char *directory, const char *name);
+/* Writes a text as a file, the second as directory/name, and frees it; DEA_E_MEMORY for one with a
+ * failed append. */
+dea_status dea_text_write_path(struct dea_context *ctx, struct dea_text *text, const char *path);
+dea_status dea_text_write(struct dea_context *ctx, struct dea_text *text, const char *directory,
+                          const char *name);
 /* The same of a string. */
 dea_status dea_text_file_write(struct dea_context *ctx, const char *directory, const char *name,
                                const char *text);
-/* Numbers are written with a decimal point whatever the program's locale: between these two calls
- * the thread formats in the C locale. */
+/* Numbers that are formatted otherwise than by dea_text_add have a decimal point between these two
+ * calls: the thread formats in the C locale. */
 void *dea_c_locale_enter(void);
 void dea_c_locale_leave(void *before);

@@ -65,10 +65,8 @@ static dea_status print_row(const char *name, size_t length, struct dea_text *te
     cli_add_wrapped(&row, NAME_WIDTH + 4, dea_text_get(text), text->length);
     fputs(dea_text_get(&row), stdout);
   }
-  const bool failed = row.failed || text->failed;
-  dea_text_free(&row);
-  dea_text_free(text);
-  return failed ? DEA_E_MEMORY : DEA_OK;
+  dea_text_free_in(&row, text);
+  return dea_text_free(text);
 }
 
 static void add_material(const struct dea_material *m, struct dea_text *out)

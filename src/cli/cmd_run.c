@@ -106,8 +106,7 @@ static void add_designs(const char *const files[], size_t count, struct dea_text
     dea_text_add(out, ", file: ");
     add_quoted(out, dea_text_get(&path), strlen(dea_text_get(&path)));
     dea_text_add(out, "}%s", i + 1 == count ? "]" : "");
-    out->failed = out->failed || path.failed;
-    dea_text_free(&path);
+    dea_text_free_in(&path, out);
   }
 }
 
@@ -465,13 +464,10 @@ static dea_status print_line(struct dea_context *ctx, const struct dea_result_ta
                    column->title, dea_text_get(&cell), strcmp(unit, "1") != 0 ? " " : "",
                    strcmp(unit, "1") != 0 ? unit : "");
     }
-    line.failed = line.failed || cell.failed;
-    dea_text_free(&cell);
+    dea_text_free_in(&cell, &line);
   }
   puts(dea_text_get(&line));
-  dea_status status = line.failed ? DEA_E_MEMORY : DEA_OK;
-  dea_text_free(&line);
-  return status;
+  return dea_text_free(&line);
 }
 
 static dea_status print_tables(struct dea_context *ctx, const struct dea_result *result,

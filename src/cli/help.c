@@ -80,9 +80,8 @@ static void add_help(struct dea_cli *cli, struct dea_text *out, int margin,
     }
   }
   cli_add_wrapped(out, margin, dea_text_get(&help), help.length);
-  out->failed = out->failed || help.failed || list.failed;
-  dea_text_free(&help);
-  dea_text_free(&list);
+  dea_text_free_in(&help, out);
+  dea_text_free_in(&list, out);
 }
 
 /* "  -o, --output DIR" into left; its length. */
@@ -188,8 +187,7 @@ dea_status cli_print_manual(struct dea_cli *cli)
     puts("\n.Bd -literal");
     print_roff(dea_text_get(&usage));
     puts(".Ed");
-    status = usage.failed ? DEA_E_MEMORY : DEA_OK;
-    dea_text_free(&usage);
+    status = dea_text_free(&usage);
   }
   puts(".Sh ENVIRONMENT\n.Bl -tag -width DEA_MATERIALS\n.It Ev DEA_MATERIALS\n"
        "directories with materials of your own, separated by colons\n"

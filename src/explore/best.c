@@ -303,9 +303,7 @@ static dea_status write_front(const struct work *w)
     char words[DEA_FLAGS_SIZE];
     dea_text_add(&out, ",%s\n", dea_flags_text(best->marks, words));
   }
-  dea_status status = dea_text_write(w->ctx, &out, w->options->folder, front_table);
-  dea_text_free(&out);
-  return status;
+  return dea_text_write(w->ctx, &out, w->options->folder, front_table);
 }
 
 // Figures -----------------------------------------------------------------------------------------
@@ -538,10 +536,7 @@ static dea_status run(struct work *w)
   snprintf(message, sizeof message, "%.511s", dea_context_message(w->ctx));
   w->report->evaluations = dea_store_count(w->store);
   if (status == DEA_OK || status == DEA_E_INTERRUPTED) {
-    void *before = dea_c_locale_enter();
-    dea_status written = write_all(w, status == DEA_OK);
-    dea_c_locale_leave(before);
-    DEA_TRY(w->ctx, written);
+    DEA_TRY(w->ctx, write_all(w, status == DEA_OK));
   }
   if (status == DEA_OK && w->report->count == 0) {
     return fail_without(w);

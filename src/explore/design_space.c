@@ -41,9 +41,7 @@ static dea_status add_identity(void *user, const struct dea_design *design,
   resolve(space, design, device, &text);
   dea_sha256_hex(dea_text_get(&text), text.length, hash);
   snprintf(space->id, sizeof space->id, "%.16s", hash);
-  const bool failed = text.failed;
-  dea_text_free(&text);
-  return failed ? DEA_E_MEMORY : DEA_OK;
+  return dea_text_free(&text);
 }
 
 /* Hash of the design as it is, of the variables and of what is kept of a case. */
@@ -64,9 +62,7 @@ static dea_status compute_hash(struct dea_design_space *space)
   dea_sha256_hex(dea_text_get(&text), text.length, space->hash);
   dea_text_add(&text, "gradients\n");
   dea_sha256_hex(dea_text_get(&text), text.length, space->hash_slopes);
-  const bool failed = text.failed;
-  dea_text_free(&text);
-  return failed ? DEA_E_MEMORY : DEA_OK;
+  return dea_text_free(&text);
 }
 
 // Evaluation --------------------------------------------------------------------------------------

@@ -31,9 +31,7 @@ static dea_status write_script(struct dea_context *ctx, const struct dea_slurm_o
   dea_text_add(&out, " --quiet -o");
   add_word(&out, options->folder);
   dea_text_add(&out, " %s\n", tail);
-  dea_status status = dea_text_write(ctx, &out, options->folder, name);
-  dea_text_free(&out);
-  return status;
+  return dea_text_write(ctx, &out, options->folder, name);
 }
 
 /* Submits a script; its job's number into job. */

@@ -234,12 +234,15 @@ static dea_status read_part(struct dea_context *ctx, void *user, const char *nam
   return status;
 }
 
-static dea_status write_all(struct dea_store *store, const char *bytes, size_t length)
+/* Adds a text to the own part, and frees it. */
+static dea_status write_text(struct dea_store *store, struct dea_text *text)
 {
-  return dea_write_all(store->file, bytes, length)
-             ? DEA_OK
-             : dea_fail(store->ctx, DEA_E_IO, "cannot write '%s': %s", store->path,
-                        strerror(errno));
+  dea_status status = text->failed ? DEA_E_MEMORY : DEA_OK;
+  if (status == DEA_OK && !dea_write_all(store->file, dea_text_get(text), text->length)) {
+    status = dea_fail(store->ctx, DEA_E_IO, "cannot write '%s': %s", store->path, strerror(errno));
+  }
+  dea_text_free(text);
+  return status;
 }
 
 static dea_status sync_now(struct dea_store *store)
@@ -301,10 +304,8 @@ static dea_status mend_part(struct dea_store *store)
   if (whole == 0) {
     add_head(&text, store);
   }
-  dea_status status =
-      text.failed ? DEA_E_MEMORY : write_all(store, dea_text_get(&text), text.length);
-  dea_text_free(&text);
-  return status == DEA_OK ? sync_now(store) : status;
+  DEA_TRY(store->ctx, write_text(store, &text));
+  return sync_now(store);
 }
 
 static dea_status open_all(struct dea_store *store, const char *folder,
@@ -327,10 +328,8 @@ dea_status dea_store_open(struct dea_context *ctx, const char *folder, const cha
   DEA_TRY_MEMORY(store != NULL);
   *store = (struct dea_store){.ctx = ctx, .evaluator = evaluator, .file = -1};
   snprintf(store->hash, sizeof store->hash, "%s", hash);
-  void *before = dea_c_locale_enter();
   dea_status status = grow(store);
   status = status == DEA_OK ? open_all(store, folder, shard) : status;
-  dea_c_locale_leave(before);
   DEA_TRY_ELSE(ctx, status, dea_store_close(store));
   *out = store;
   return DEA_OK;
@@ -382,13 +381,8 @@ dea_status dea_store_remove(struct dea_context *ctx, const char *folder)
 dea_status dea_store_add(struct dea_store *store, const struct dea_case *done)
 {
   struct dea_text line = {.ctx = store->ctx};
-  void *before = dea_c_locale_enter();
   add_line(&line, store->evaluator, done);
-  dea_c_locale_leave(before);
-  dea_status status =
-      line.failed ? DEA_E_MEMORY : write_all(store, dea_text_get(&line), line.length);
-  dea_text_free(&line);
-  DEA_TRY(store->ctx, status);
+  DEA_TRY(store->ctx, write_text(store, &line));
   DEA_TRY(store->ctx, remember(store, done));
   return dea_clock_s() - store->synced_s > store->wait_s ? sync_now(store) : DEA_OK;
 }

@@ -149,7 +149,6 @@ dea_status dea_sweep_emulate(const struct dea_design_space *space, const struct 
 {
   struct dea_context *ctx = space->ctx;
   struct work w = {.space = space, .memory = {.ctx = ctx}};
-  void *before = dea_c_locale_enter();
   dea_status status = gather(&w, plan);
   if (status == DEA_OK) {
     status = dea_emulator_build(ctx, &w.emulator);
@@ -157,6 +156,5 @@ dea_status dea_sweep_emulate(const struct dea_design_space *space, const struct 
     dea_emulator_free(ctx, &w.emulator);
   }
   dea_arena_free(&w.memory);
-  dea_c_locale_leave(before);
   return status;
 }

@@ -113,9 +113,7 @@ static dea_status write_csv(const struct work *w, const struct column *columns, 
     }
     dea_text_add(&out, "\n");
   }
-  dea_status status = dea_text_write(w->ctx, &out, w->folder, "cases.csv");
-  dea_text_free(&out);
-  return status;
+  return dea_text_write(w->ctx, &out, w->folder, "cases.csv");
 }
 
 static void write_column(struct h5 *h, const struct work *w, hid_t group,
@@ -284,6 +282,9 @@ static dea_status write_statistics(struct work *w, double *values)
 static dea_status write_limits(const struct work *w)
 {
   struct dea_text out = {.ctx = w->ctx};
+  if (w->space->limit_count == 0) {
+    return DEA_OK;
+  }
   dea_text_add(&out, "quantity,above,below,samples,crossed,probability,standard error\n");
   for (size_t l = 0; l < w->space->limit_count; l++) {
     const struct dea_limit *limit = &w->space->limits[l];
@@ -300,10 +301,7 @@ static dea_status write_limits(const struct work *w)
     DEA_CSV_ADD(&out, 12, share, sqrt(share * (1 - share) / (double)n));
     dea_text_add(&out, "\n");
   }
-  dea_status status =
-      w->space->limit_count > 0 ? dea_text_write(w->ctx, &out, w->folder, "limits.csv") : DEA_OK;
-  dea_text_free(&out);
-  return status;
+  return dea_text_write(w->ctx, &out, w->folder, "limits.csv");
 }
 
 static dea_status write_indices(const struct work *w, double *values)
@@ -325,9 +323,7 @@ static dea_status write_indices(const struct work *w, double *values)
       dea_text_add(&out, "\n");
     }
   }
-  dea_status status = dea_text_write(w->ctx, &out, w->folder, "indices.csv");
-  dea_text_free(&out);
-  return status;
+  return dea_text_write(w->ctx, &out, w->folder, "indices.csv");
 }
 
 // Bands of a quantity at several voltages ---------------------------------------------------------

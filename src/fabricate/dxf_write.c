@@ -180,8 +180,7 @@ static dea_status write_file(struct file *file, const double box_m[4], const str
   dea_text_add(out, "%s", dea_text_get(entities));
   group(file, 0, "ENDSEC");
   groups(file, objects);
-  out->failed |= entities->failed;
-  dea_text_free(entities);
+  dea_text_free_in(entities, out);
   return out->failed ? DEA_E_MEMORY : DEA_OK;
 }
 
@@ -314,8 +313,7 @@ static dea_status write_entities(struct file *file, const struct dea_workshop *w
   dea_sheet_labels(workshop, index, &words);
   const double height = fmin(2.5e-3, layout->width_m / 130); // so that they fit
   write_words(file, DEA_LAYER_NOTE, 2e-3, -2 * height, height, false, dea_text_get(&words));
-  dea_status status = words.failed ? DEA_E_MEMORY : DEA_OK;
-  dea_text_free(&words);
+  dea_status status = dea_text_free(&words);
   for (int copy = 0; copy < layout->count && status == DEA_OK; copy++) {
     double at[2];
     dea_sheet_place(layout, copy, at);

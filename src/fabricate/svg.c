@@ -106,8 +106,7 @@ dea_status dea_svg_write(const struct dea_workshop *workshop, size_t index, stru
                "     width=\"%.6fmm\" height=\"%.6fmm\" viewBox=\"0 0 %.6f %.6f\">\n"
                "  <title>%s</title>\n",
                width, height, width, height, dea_text_get(&words));
-  dea_status status = words.failed ? DEA_E_MEMORY : DEA_OK;
-  dea_text_free(&words);
+  dea_status status = dea_text_free(&words);
   for (int layer = 0; layer < DEA_LAYER_NOTE && status == DEA_OK; layer++) {
     status = write_layer(out, workshop, index, (enum dea_layer)layer);
   }

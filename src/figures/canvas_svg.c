@@ -84,8 +84,7 @@ static void box(struct dea_canvas *canvas, double x, double y, double width, dou
 
 static void forget_path(struct dea_canvas *canvas)
 {
-  canvas->out->failed |= canvas->path.failed;
-  dea_text_free(&canvas->path);
+  dea_text_free_in(&canvas->path, canvas->out);
   canvas->path = (struct dea_text){.ctx = canvas->out->ctx};
 }
 

@@ -26,7 +26,6 @@ static void add_number(struct dea_text *text, double value)
 /* A file that is being written. */
 struct sheet {
   struct dea_text text;
-  void *locale;  // that was before
   int count;     // of columns
   bool *columns; // [count] those that hold a number at some point; owned
   bool any;      // a line, without which there is no file
@@ -36,9 +35,7 @@ static dea_status begin_sheet(struct dea_context *ctx, struct sheet *out)
 {
   *out = (struct sheet){.text = {.ctx = ctx}, .count = dea_column_count(ctx)};
   out->columns = dea_alloc(ctx, (size_t)out->count, sizeof *out->columns);
-  DEA_TRY(ctx, out->columns != NULL ? DEA_OK : DEA_E_MEMORY);
-  out->locale = dea_c_locale_enter();
-  return DEA_OK;
+  return out->columns != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
 /* Writes directory/MODEL_KIND.csv, or MODEL_KIND_WHAT.csv; kind, what: "" for none. */
@@ -54,7 +51,6 @@ static dea_status end_sheet(struct sheet *s, const char *directory, const char *
 {
   char name[DEA_RESULT_TABLE_FILE_SIZE];
   name_sheet(model, kind, what, name);
-  dea_c_locale_leave(s->locale);
   dea_status status = s->any ? dea_text_write(s->text.ctx, &s->text, directory, name) : DEA_OK;
   dea_free(s->text.ctx, s->columns);
   dea_text_free(&s->text);
@@ -286,8 +282,7 @@ static void add_table_row(struct dea_text *text, const struct dea_result_table *
       }
       dea_text_add(text, "%s", first ? "" : ",");
       dea_csv_add_name(text, dea_text_get(&cell));
-      text->failed = text->failed || cell.failed;
-      dea_text_free(&cell);
+      dea_text_free_in(&cell, text);
     }
   }
   dea_text_add(text, "\n");

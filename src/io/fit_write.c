@@ -125,9 +125,7 @@ static dea_status write_folder(struct dea_context *ctx, const struct dea_fit_fol
   struct dea_text csv = {.ctx = ctx}, yaml = {.ctx = ctx};
   snprintf(file, sizeof file, "%.63s.yaml", head->name.text);
   dea_status status = dea_json_text(ctx, root, &json);
-  void *before = dea_c_locale_enter();
   status = status == DEA_OK ? fill(ctx, fit, &csv, &yaml) : status;
-  dea_c_locale_leave(before);
   const char *const files[] = {file, "fit.json", "fit.csv"};
   for (size_t k = 0; k < 3 + figure_count && status == DEA_OK; k++) { // of an earlier fit
     status =
@@ -204,8 +202,7 @@ static void add_source(struct dea_text *out, const char *indent, const struct de
   }
   add_key(out, indent, "source", dea_text_get(&source));
   add_temperatures(out, indent, fit);
-  out->failed = out->failed || source.failed;
-  dea_text_free(&source);
+  dea_text_free_in(&source, out);
 }
 
 static void add_value(struct dea_text *out, const char *separator, const char *key, double value,
@@ -261,8 +258,7 @@ static void add_law(struct dea_text *out, const struct dea_fit *fit)
     }
   }
   add_key(out, "    ", "note", dea_text_get(&note));
-  out->failed = out->failed || note.failed;
-  dea_text_free(&note);
+  dea_text_free_in(&note, out);
 }
 
 /* The branches' shift, and the temperatures of the tests. */

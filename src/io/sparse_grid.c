@@ -321,9 +321,7 @@ dea_status dea_emulator_device(struct dea_context *ctx, const struct dea_design 
   struct dea_text text = {.ctx = ctx};
   dea_device_identity(design, device, "compute", &text);
   dea_sha256_hex(dea_text_get(&text), text.length, out);
-  const bool failed = text.failed;
-  dea_text_free(&text);
-  return failed ? DEA_E_MEMORY : DEA_OK;
+  return dea_text_free(&text);
 }
 
 // JSON --------------------------------------------------------------------------------------------

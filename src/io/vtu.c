@@ -256,7 +256,6 @@ static void build(struct file *file, const struct grid *grid, double voltage_V)
   dea_text_add(&file->head, "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
   dea_text_add_bytes(&file->head, file->data.data, file->data.length);
   dea_text_add(&file->head, "\n</AppendedData>\n</VTKFile>\n");
-  file->head.failed = file->head.failed || file->data.failed;
 }
 
 static dea_status write(struct dea_context *ctx, const struct dea_field_mesh *mesh, size_t copies,
@@ -273,13 +272,9 @@ static dea_status write(struct dea_context *ctx, const struct dea_field_mesh *me
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "a VTU file takes at most %d nodes of cells",
                     INT32_MAX);
   }
-  void *before = dea_c_locale_enter();
   build(&file, &grid, voltage_V);
-  dea_c_locale_leave(before);
-  dea_text_free(&file.data);
-  const dea_status status = dea_text_write_path(ctx, &file.head, path);
-  dea_text_free(&file.head);
-  return status;
+  dea_text_free_in(&file.data, &file.head);
+  return dea_text_write_path(ctx, &file.head, path);
 }
 
 dea_status dea_vtu_write(struct dea_context *ctx, const struct dea_field_mesh *mesh,
@@ -301,7 +296,6 @@ dea_status dea_pvd_write(struct dea_context *ctx, const struct dea_pvd_entry *en
     rising = rising && entries[i].voltage_V > entries[i - 1].voltage_V;
   }
   struct dea_text text = {.ctx = ctx};
-  void *before = dea_c_locale_enter();
   dea_text_add(&text,
                "<?xml version=\"1.0\"?>\n<!-- dea %s; time: %s -->\n<VTKFile type=\"Collection\" "
                "version=\"0.1\" byte_order=\"%s\">\n<Collection>\n",
@@ -312,8 +306,5 @@ dea_status dea_pvd_write(struct dea_context *ctx, const struct dea_pvd_entry *en
                  rising ? entries[i].voltage_V : (double)i, entries[i].file);
   }
   dea_text_add(&text, "</Collection>\n</VTKFile>\n");
-  dea_c_locale_leave(before);
-  dea_status status = dea_text_write_path(ctx, &text, path);
-  dea_text_free(&text);
-  return status;
+  return dea_text_write_path(ctx, &text, path);
 }

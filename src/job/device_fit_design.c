@@ -295,7 +295,6 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
   if (status == DEA_OK && with->title[0] != '\0') {
     status = add_title(ctx, document, with->title);
   }
-  void *before = dea_c_locale_enter();
   if (status == DEA_OK) {
     dea_yaml_write(dea_yaml_root(document), &design);
     for (size_t i = 0; i < count; i++) {
@@ -308,7 +307,6 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
     }
     status = design.failed || material.failed || out->failed ? DEA_E_MEMORY : DEA_OK;
   }
-  dea_c_locale_leave(before);
   dea_text_free(&material);
   dea_text_free(&design);
   dea_yaml_destroy(ctx, document);
@@ -325,10 +323,8 @@ dea_status dea_device_design_build(struct dea_context *ctx, struct dea_device_fi
     values[j] = fit->core.values[j].value;
   }
   struct dea_text uncertainty = {.ctx = ctx};
-  void *before = dea_c_locale_enter();
   add_uncertainty(&uncertainty, fit);
   add_head(&fit->design, fit);
-  dea_c_locale_leave(before);
   const struct dea_device_values with = {.params = fit->params,
                                          .values = values,
                                          .count = fit->param_count,

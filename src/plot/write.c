@@ -338,9 +338,7 @@ dea_status dea_plot_write(struct dea_context *ctx, const struct dea_plot *plot,
                           const struct dea_plot_format *format, const char *directory)
 {
   struct dea_text gp = {.ctx = ctx}, dat = {.ctx = ctx};
-  void *before = dea_c_locale_enter();
   add_script(&gp, plot, format);
   add_data(&dat, plot);
-  dea_c_locale_leave(before);
   return dea_script_write(directory, plot->name, &gp, &dat);
 }

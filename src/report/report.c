@@ -132,7 +132,7 @@ static dea_status add_page(struct dea_report *report)
   }
   DEA_TRY(report->ctx, dea_section_fit(report));
   add_end(report);
-  return report->text.failed ? DEA_E_MEMORY : DEA_OK;
+  return DEA_OK;
 }
 
 dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run *runs,
@@ -155,9 +155,7 @@ dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run
   }
   status = status == DEA_OK ? add_page(&report) : status;
   dea_c_locale_leave(before);
-  if (status == DEA_OK) {
-    status = dea_file_write(ctx, path, report.text.data, report.text.length);
-  }
+  status = status == DEA_OK ? dea_text_write_path(ctx, &report.text, path) : status;
   dea_text_free(&report.text);
   dea_measured_destroy(ctx, measured);
   return DEA_CHAIN(ctx, status);

@@ -88,8 +88,7 @@ static void add_header(struct dea_text *out, const struct dea_result_table *tabl
       dea_html_add(out, " colspan=\"%zu\" title=\"%s\">%s</th>", dea_result_table_values(table, c),
                    column->meaning, dea_text_get(&title));
     }
-    out->failed = out->failed || title.failed;
-    dea_text_free(&title);
+    dea_text_free_in(&title, out);
   }
 }
 
@@ -107,8 +106,7 @@ static void add_cell(struct dea_text *out, const struct dea_result_table *table,
     dea_text_add(&cell, " %s", quantity->display_unit);
   }
   dea_html_element(out, is_text(column) ? "td" : "td class=\"n\"", dea_text_get(&cell));
-  out->failed = out->failed || cell.failed;
-  dea_text_free(&cell);
+  dea_text_free_in(&cell, out);
 }
 
 static void add_rows(struct dea_report *report, const struct dea_result_table *table,
@@ -151,8 +149,7 @@ static void add_facts(struct dea_report *report, const struct dea_result_table *
             out, "<div class=\"card\"><dt>%s</dt><dd>%s <span class=\"unit\">%s</span></dd></div>",
             column->title, dea_text_get(&cell), strcmp(unit, "1") != 0 ? unit : "");
       }
-      out->failed = out->failed || cell.failed;
-      dea_text_free(&cell);
+      dea_text_free_in(&cell, out);
     }
   }
 }

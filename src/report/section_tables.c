@@ -109,8 +109,7 @@ static void add_glance(struct dea_report *report, const struct dea_result *resul
   dea_html_add(out, "<p class=\"%s\"><strong>Model %s</strong>: %s.</p>",
                trust.doubts != 0 || trust.dangers != 0 ? "warning" : "verdict", sweep->model,
                dea_text_get(&text));
-  out->failed = out->failed || text.failed;
-  dea_text_free(&text);
+  dea_text_free_in(&text, out);
   add_cards_at(report, result, sweep, trust.good_V,
                ", the largest voltage that is valid and below breakdown", 0);
   if (trust.trusted_V > trust.good_V || isnan(trust.good_V)) {

@@ -333,9 +333,7 @@ static dea_status write_csv(struct dea_context *ctx, const struct waveform *wave
     dea_text_add(&out, "%.12g,%.12g,%.12g\n", wave->time_s[i], 1e-3 * wave->voltage_V[i],
                  wave->control_V[i]);
   }
-  dea_status status = dea_text_write(ctx, &out, directory, "waveform.csv");
-  dea_text_free(&out);
-  return status;
+  return dea_text_write(ctx, &out, directory, "waveform.csv");
 }
 
 /* A variable of a .mat file of version 5, a column of numbers; what comes behind it. */
@@ -390,9 +388,7 @@ static dea_status write_texts(struct dea_context *ctx, const struct dea_protocol
   for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
     struct dea_text out = {.ctx = ctx};
     texts[i].write(protocol, &out);
-    dea_status status = dea_text_write(ctx, &out, directory, texts[i].name);
-    dea_text_free(&out);
-    DEA_TRY(ctx, status);
+    DEA_TRY(ctx, dea_text_write(ctx, &out, directory, texts[i].name));
   }
   return DEA_OK;
 }
@@ -406,12 +402,10 @@ dea_status dea_protocol_export(struct dea_context *ctx, const struct dea_protoco
                     protocol->file);
   }
   DEA_TRY(ctx, dea_folder_create(ctx, directory));
-  void *before = dea_c_locale_enter();
   dea_status status = sample(ctx, protocol, &wave);
   status = status == DEA_OK ? write_csv(ctx, &wave, directory) : status;
   status = status == DEA_OK ? write_mat(ctx, protocol, &wave, directory) : status;
   status = status == DEA_OK ? write_texts(ctx, protocol, directory) : status;
-  dea_c_locale_leave(before);
   dea_free(ctx, wave.time_s);
   dea_free(ctx, wave.voltage_V);
   dea_free(ctx, wave.control_V);

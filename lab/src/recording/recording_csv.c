@@ -225,7 +225,6 @@ dea_status dea_recording_write_tables(struct dea_context *ctx,
 {
   DEA_TRY(ctx, create_folders(ctx, folder, force));
   DEA_TRY(ctx, dea_folder_create(ctx, folder));
-  void *before = dea_c_locale_enter();
   dea_status status = write_channels(ctx, recording, folder);
   if (status == DEA_OK && recording->profiles.count > 0) {
     status = write_profiles(ctx, &recording->profiles, folder);
@@ -233,6 +232,5 @@ dea_status dea_recording_write_tables(struct dea_context *ctx,
   if (status == DEA_OK && recording->cycle_count > 0) {
     status = write_cycles(ctx, recording, folder);
   }
-  dea_c_locale_leave(before);
   return status;
 }

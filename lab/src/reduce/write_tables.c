@@ -116,15 +116,6 @@ static void add_title(struct dea_text *text, const char *name, const char *what,
   dea_text_add(text, ",%s%s%s (%s)", name, what[0] != '\0' ? " " : "", what, unit);
 }
 
-static dea_status write(struct dea_context *ctx, struct dea_text *text, void *before,
-                        const char *directory, const char *name)
-{
-  dea_c_locale_leave(before);
-  dea_status status = dea_text_write(ctx, text, directory, name);
-  dea_text_free(text);
-  return status;
-}
-
 /* Where a file's numbers come from, as a comment. */
 static void add_source(struct dea_text *text, const struct dea_recording *recording)
 {
@@ -196,7 +187,6 @@ static dea_status write_measurement(struct dea_context *ctx, const struct dea_re
   if (count == 0) {
     return DEA_OK;
   }
-  void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   double usual[3];
   add_source(&text, recording);
@@ -223,13 +213,12 @@ static dea_status write_measurement(struct dea_context *ctx, const struct dea_re
     l += row.levels;
   }
   dea_text_add(&text, "\n");
-  return write(ctx, &text, before, directory, means ? "means.csv" : "measurement.csv");
+  return dea_text_write(ctx, &text, directory, means ? "means.csv" : "measurement.csv");
 }
 
 static dea_status write_levels(struct dea_context *ctx, const struct dea_reduction *r,
                                const char *directory)
 {
-  void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   const bool current = r->current.samples > 0;
   dea_text_add(&text, "V (kV),step,cycles,shape,shape uncertainty");
@@ -271,13 +260,12 @@ static dea_status write_levels(struct dea_context *ctx, const struct dea_reducti
     }
   }
   dea_text_add(&text, "\n");
-  return write(ctx, &text, before, directory, "levels.csv");
+  return dea_text_write(ctx, &text, directory, "levels.csv");
 }
 
 static dea_status write_cycles(struct dea_context *ctx, const struct dea_reduction *r,
                                const char *directory)
 {
-  void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   const bool current = r->current.samples > 0;
   dea_text_add(&text, "step,cycle,start (s),end (s),under voltage (s),asked V (kV),V (kV),shape");
@@ -316,7 +304,7 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_reducti
     }
   }
   dea_text_add(&text, "\n");
-  return write(ctx, &text, before, directory, "cycles.csv");
+  return dea_text_write(ctx, &text, directory, "cycles.csv");
 }
 
 /* A row a cycle of what `dea fit` judges lives by: the main displacement, or the force. */
@@ -325,7 +313,6 @@ static dea_status write_life(struct dea_context *ctx, const struct dea_recording
 {
   const enum dea_reduced_kind kind = dea_reduced_main(r);
   const bool current = r->current.samples > 0, stroke = kind != DEA_REDUCED_KINDS;
-  void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   add_source(&text, recording);
   dea_text_add(&text, "end (s),under voltage (s),asked V (kV)");
@@ -348,13 +335,12 @@ static dea_status write_life(struct dea_context *ctx, const struct dea_recording
     }
     dea_text_add(&text, ",%d\n", k + 1 == r->cycle_count && !recording->complete);
   }
-  return write(ctx, &text, before, directory, "life.csv");
+  return dea_text_write(ctx, &text, directory, "life.csv");
 }
 
 static dea_status write_discharges(struct dea_context *ctx, const struct dea_reduction *r,
                                    const char *directory)
 {
-  void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   dea_text_add(&text, "time (s),kind,V (kV),peak (uA),charge (nC)");
   for (size_t i = 0; i < r->discharge_count; i++) {
@@ -364,13 +350,12 @@ static dea_status write_discharges(struct dea_context *ctx, const struct dea_red
     DEA_CSV_ADD(&text, 10, 1e-3 * d->voltage_V, 1e6 * d->peak_A, 1e9 * d->charge_C);
   }
   dea_text_add(&text, "\n");
-  return write(ctx, &text, before, directory, "discharges.csv");
+  return dea_text_write(ctx, &text, directory, "discharges.csv");
 }
 
 static dea_status write_profiles(struct dea_context *ctx, const struct dea_reduction *r,
                                  const char *directory)
 {
-  void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   dea_text_add(&text, "V (kV),x (mm),z (um),z std (um)\n");
   for (size_t l = 0; l < r->level_count; l++) {
@@ -383,7 +368,7 @@ static dea_status write_profiles(struct dea_context *ctx, const struct dea_reduc
       }
     }
   }
-  return write(ctx, &text, before, directory, "profiles.csv");
+  return dea_text_write(ctx, &text, directory, "profiles.csv");
 }
 
 static dea_status write_time_series(struct dea_context *ctx, const struct dea_recording *recording,
@@ -399,7 +384,6 @@ static dea_status write_time_series(struct dea_context *ctx, const struct dea_re
   };
   static const enum dea_reduced_kind named[] = {DEA_REDUCED_CENTRE, DEA_REDUCED_FIBRE_TIP,
                                                 DEA_REDUCED_FORCE};
-  void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   add_source(&text, recording);
   if (table.thinned) {
@@ -424,7 +408,7 @@ static dea_status write_time_series(struct dea_context *ctx, const struct dea_re
   }
   dea_text_add(&text, "\n");
   dea_reduced_series_free(ctx, &table);
-  return write(ctx, &text, before, directory, "history.csv");
+  return dea_text_write(ctx, &text, directory, "history.csv");
 }
 
 dea_status dea_reduction_write_tables(struct dea_context *ctx,
