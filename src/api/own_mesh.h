@@ -5,7 +5,6 @@
 #include "api/api.h"
 
 struct dea_solid_object;
-struct dea_field_mesh;
 
 /* Where nodes or the middles of faces are looked for: low_m <= X <= high_m, with a little more. */
 struct dea_solid_place {

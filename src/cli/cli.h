@@ -7,7 +7,6 @@
 
 #include <jansson.h>
 #include <stddef.h>
-#include <stdio.h>
 
 /* What all commands share. Results go to stdout, everything else to stderr. */
 struct dea_cli {

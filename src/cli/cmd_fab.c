@@ -2,7 +2,6 @@
 #include "cli/cli.h"
 
 #include "base/json.h"
-#include "base/text.h"
 #include "fabricate/files.h"
 #include "fabricate/process.h"
 

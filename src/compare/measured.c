@@ -1,11 +1,9 @@
 #include "compare/measured.h"
 
-#include "base/csv_line.h"
 #include "base/write_file.h"
 #include "result/observation.h"
 
 #include <math.h>
-#include <stdio.h>
 
 enum { PROFILE_V, PROFILE_X, PROFILE_Z, PROFILE_COLUMNS };
 

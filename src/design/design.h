@@ -37,7 +37,6 @@ enum dea_buckling_branch { DEA_BRANCH_ANY, DEA_BRANCH_FIBRES, DEA_BRANCH_BACK };
 
 struct dea_design;
 struct dea_device;
-struct dea_record;
 struct dea_settings;
 
 /* A design that another one is compared with. */

@@ -4,7 +4,6 @@
 #include "device/layout_check.h"
 #include "material/plane.h"
 
-#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>

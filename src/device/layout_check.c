@@ -4,7 +4,6 @@
 #include "geometry/boolean.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Parts of an area that rounding may leave. */
 static const double rounding = 1e-6;

@@ -5,7 +5,6 @@
 #include "base/write_file.h"
 #include "explore/explore_sweep.h"
 #include "explore/plan.h"
-#include "plot/plot.h"
 #include "result/columns.h"
 #include "result/figure.h"
 

@@ -1,7 +1,6 @@
 /* Gradients of quantities by the model's own (docs/theory/gradients.md). */
 #include "explore/design_space.h"
 
-#include "result/columns.h"
 #include "study/force.h"
 
 #include <math.h>

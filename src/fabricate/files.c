@@ -1,6 +1,5 @@
 #include "fabricate/files.h"
 
-#include "base/file.h"
 #include "base/write_file.h"
 #include "fabricate/cairo_canvas.h"
 #include "fabricate/dxf_write.h"

@@ -1,6 +1,5 @@
 #include "geometry/contour.h"
 
-#include <math.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;

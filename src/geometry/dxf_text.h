@@ -2,7 +2,6 @@
 #pragma once
 
 #include <stdbool.h>
-#include <stddef.h>
 
 enum { DEA_DXF_TEXT_SIZE = 256 };
 

@@ -1,7 +1,6 @@
 /* Reader of measurements (see dea_measurement_read in csv.h). */
 #include "io/csv.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

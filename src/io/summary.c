@@ -1,7 +1,6 @@
 #include "io/summary.h"
 
 #include "base/json.h"
-#include "base/write_file.h"
 #include "result/columns.h"
 #include "result/trust.h"
 

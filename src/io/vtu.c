@@ -2,10 +2,8 @@
 
 #include "base/version.h"
 #include "base/write_file.h"
-#include "result/field_mesh.h"
 
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { CELL_NODES_MAX = 27 };

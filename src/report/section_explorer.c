@@ -5,7 +5,6 @@
 #include "result/figure.h"
 #include "result/observation.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 enum { STEPS_MAX = 40, BYTES_MAX = 700000, LEVELS = 65535 }; // before base64, of one run
 

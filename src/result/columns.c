@@ -1,7 +1,5 @@
 #include "result/columns.h"
 
-#include "base/text.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

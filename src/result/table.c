@@ -1,7 +1,5 @@
 #include "result/table.h"
 
-#include "result/columns.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,6 @@
 #define _GNU_SOURCE // O_NOFOLLOW, O_PATH
 #include "studio/studio_files.h"
 
-#include "base/text.h"
-
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

@@ -3,7 +3,6 @@
 
 #include "base/assets.h"
 #include "base/file.h"
-#include "base/write_file.h"
 #include "compare/measured.h"
 #include "job/report_runs.h"
 #include "report/section.h"

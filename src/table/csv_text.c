@@ -1,6 +1,5 @@
 #include "table/csv_text.h"
 
-#include "base/text.h"
 #include "table/fields.h"
 #include "table/text_rows.h"
 #include "table/titles.h"
