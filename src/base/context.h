@@ -112,6 +112,7 @@ bool dea_status_ends(dea_status status);
  * that ends. */
 dea_status dea_forgive(struct dea_context *ctx, dea_status status);
 
+#define DEA_PI 3.14159265358979323846
 /* Items of an array. */
 #define DEA_COUNT(array) (sizeof(array) / sizeof(array)[0])
 

@@ -75,10 +75,9 @@ dea_status dea_device_refuse_densities(struct dea_context *ctx, struct dea_locat
 
 void dea_device_fit_breakdown(struct dea_device *device)
 {
-  static const double pi = 3.14159265358979323846;
   double radius_m = device->electrode_radius_m / device->pre_stretch; // unstretched
   if (device->film.breakdown.known) {
-    dea_breakdown_specialise(device->film_thickness_unstretched_m, pi * radius_m * radius_m,
+    dea_breakdown_specialise(device->film_thickness_unstretched_m, DEA_PI * radius_m * radius_m,
                              &device->film.breakdown);
   }
 }

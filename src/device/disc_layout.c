@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double pi = 3.14159265358979323846;
-
 enum { FILM, ELECTRODE, FIBRES, FILLER, SEAT, REGIONS }; // seat: of fibres on electrodes
 enum { PLIES = 7 };
 
@@ -67,7 +65,7 @@ static void add_fibres(const struct dea_device *d, int region, struct dea_region
 {
   const struct outline fibre = outline_of(d, region);
   for (int i = 0; i < d->fibre_count; i++) {
-    double angle = d->angle_rad + 2 * pi * i / d->fibre_count, c = cos(angle), s = sin(angle);
+    double angle = d->angle_rad + 2 * DEA_PI * i / d->fibre_count, c = cos(angle), s = sin(angle);
     struct dea_vertex v[4] = {0};
     for (int k = 0; k < 4; k++) {
       v[k].x_m = c * fibre.corner[k][0] - s * fibre.corner[k][1];
@@ -221,7 +219,7 @@ dea_status dea_disc_layout_own_monitors(struct dea_context *ctx, const struct de
 {
   enum { OWN_MAX = 4 };
   const double c = cos(d->angle_rad), s = sin(d->angle_rad), *centre = d->centre_m;
-  const double half = d->angle_rad + pi / (d->fibre_count > 0 ? d->fibre_count : 4);
+  const double half = d->angle_rad + DEA_PI / (d->fibre_count > 0 ? d->fibre_count : 4);
   const double a = d->electrode_radius_m, tip = d->fibre_tip_radius_m;
   const double edge[2] = {centre[0] + a * cos(half), centre[1] + a * sin(half)};
   const struct dea_layout_monitor all[OWN_MAX] = {

@@ -76,15 +76,14 @@ static dea_status build_fibre(struct dea_context *ctx, const struct dea_design *
  * that allows. One fibre alone has them at right angles. */
 static void add_leads(const struct dea_design *design, const struct dea_device *device)
 {
-  static const double pi = 3.14159265358979323846;
   const struct dea_quantity *given = &design->fabrication.leads.angle_rad;
   struct dea_layout_electrode *electrodes = device->layout->electrodes;
   const int N = device->fibre_count, fibres = N == 1 ? 2 : N;
-  const double half = fibres > 0 ? pi / fibres : 0, step = 2 * half;
+  const double half = fibres > 0 ? DEA_PI / fibres : 0, step = 2 * half;
   for (size_t i = 0; i < device->layout->electrode_count; i++) {
     double angle = given->origin != DEA_ABSENT ? given->si : half;
     if (!electrodes[i].top) {
-      const double opposite = angle + pi;
+      const double opposite = angle + DEA_PI;
       angle = fibres > 0 ? half + step * floor((opposite - half) / step + 0.5 - 1e-9) : opposite;
     }
     electrodes[i].lead = true;

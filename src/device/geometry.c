@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Parts that touch exactly do not overlap; the file's decimals leave a rounding error. */
 static const double touching = 1e-9;
 
@@ -82,7 +80,7 @@ static dea_status check_neighbours(struct dea_context *ctx, const struct dea_des
                                    const struct dea_device *device)
 {
   int N = device->fibre_count;
-  double capacity = sin(fmin(pi / N, pi / 2)), w_t = device->fibre_tip_width_m,
+  double capacity = sin(fmin(DEA_PI / N, DEA_PI / 2)), w_t = device->fibre_tip_width_m,
          r_t = device->fibre_tip_radius_m, w = device->fibre_width_m,
          r_o = device->frame_radius_m - device->fibre_outer_gap_m;
   bool tapers = design->fibres.tip_width_m.origin != DEA_ABSENT;

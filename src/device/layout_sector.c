@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 static const double same = 1e-9;           // of unit vectors
 enum { SHIFT_Z = 4, LINES_OF_CIRCLE = 4 }; // lines taken where every one is a line of symmetry
 
@@ -96,7 +95,7 @@ struct dea_layout_sector dea_layout_sector_of(const struct dea_layout *l)
   memcpy(out.centre_m, s->centre_m, sizeof out.centre_m);
   for (size_t i = 0; i < candidates; i++) {
     double angle =
-        round ? pi * (double)i / LINES_OF_CIRCLE : s->mirror_rad + (double)i * s->step_rad;
+        round ? DEA_PI * (double)i / LINES_OF_CIRCLE : s->mirror_rad + (double)i * s->step_rad;
     if (has_all(l, angle)) {
       out.angle_rad = lines == 0 ? angle : out.angle_rad;
       lines++;
@@ -119,7 +118,7 @@ size_t dea_layout_sector_copies(const struct dea_layout_sector *sector)
 struct dea_motion dea_layout_sector_copy(const struct dea_layout_sector *sector, size_t number)
 {
   const size_t pair = number / 2;
-  double turn = sector->fold > 0 ? pi * (double)pair / sector->fold : 0;
+  double turn = sector->fold > 0 ? DEA_PI * (double)pair / sector->fold : 0;
   // a turn by t after a mirror at an angle is a mirror at t/2 more
   return number % 2 == 1 ? dea_motion_mirror(sector->centre_m, sector->angle_rad + turn)
                          : dea_motion_rotation(sector->centre_m, 2 * turn);
@@ -139,7 +138,7 @@ void dea_layout_sector_region(const struct dea_layout_sector *sector, double rea
   struct dea_vertex corner[STEPS + 2];
   size_t count = 0;
   for (int i = 0; i <= STEPS; i++) {
-    double angle = sector->angle_rad + i * pi / (STEPS * sector->fold);
+    double angle = sector->angle_rad + i * DEA_PI / (STEPS * sector->fold);
     corner[count++] = (struct dea_vertex){.x_m = sector->centre_m[0] + reach_m * cos(angle),
                                           .y_m = sector->centre_m[1] + reach_m * sin(angle)};
   }
@@ -171,7 +170,7 @@ int dea_layout_sector_holds(const struct dea_layout_sector *sector, const double
   int held = 0;
   memcpy(Q, one, sizeof one);
   for (int side = 0; side < 2 && sector->fold > 0; side++) {
-    const struct line line = line_at(sector->angle_rad + side * pi / sector->fold);
+    const struct line line = line_at(sector->angle_rad + side * DEA_PI / sector->fold);
     if (fabs(dot(from, line.across)) > near_m) {
       continue;
     }

@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 // Names ------------------------------------------------------------------------------------------
 
 /* Parts of one kind: a list of structs that begin with their name. */
@@ -195,7 +193,7 @@ static dea_status repeat(struct maker *m, const struct dea_parts_shape *shape,
   }
   if (shape->make == DEA_MAKE_POLAR) {
     double count = shape->count.si;
-    double step = shape->angle_rad.origin == DEA_ABSENT ? 2 * pi / count : shape->angle_rad.si;
+    double step = shape->angle_rad.origin == DEA_ABSENT ? 2 * DEA_PI / count : shape->angle_rad.si;
     const double centre[2] = {shape->x.si, shape->y.si};
     dea_region_add_polar(&copies, region_of(m, of), (size_t)count, centre, step);
   } else {

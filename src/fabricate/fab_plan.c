@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Parts that touch exactly do not overlap; the file's decimals leave a rounding error. */
 static const double touching = 1e-9;
 
@@ -173,10 +171,10 @@ static void place_marks(struct dea_fab_plan *plan)
   const double *last = plan->pad_count > 0 ? plan->pad[plan->pad_count - 1].at_m : NULL;
   const double from = last != NULL ? atan2(last[1], last[0]) : 0;
   const double *first = plan->pad_count > 1 ? plan->pad[0].at_m : NULL;
-  double turn = first != NULL ? atan2(first[1], first[0]) - from : pi;
-  turn -= 2 * pi * floor(turn / (2 * pi));
-  const bool wider = turn >= pi * (1 - 1e-9);
-  const double two = wider ? turn : turn - 2 * pi, one = wider ? turn - 2 * pi : turn;
+  double turn = first != NULL ? atan2(first[1], first[0]) - from : DEA_PI;
+  turn -= 2 * DEA_PI * floor(turn / (2 * DEA_PI));
+  const bool wider = turn >= DEA_PI * (1 - 1e-9);
+  const double two = wider ? turn : turn - 2 * DEA_PI, one = wider ? turn - 2 * DEA_PI : turn;
   const double angle[DEA_FAB_MARKS] = {from + two / 3, from + 2 * two / 3, from + 0.4 * one};
   const double centre[2] = {0, 0}, holder[2] = {plan->holder_m, plan->holder_m};
   for (int m = 0; m < DEA_FAB_MARKS; m++) {
@@ -399,7 +397,7 @@ static void add_strip(const struct dea_fab_plan *plan, int number, double at, do
                       double to, bool round, struct dea_location location, struct dea_region *out)
 {
   const struct dea_device *d = plan->device;
-  const double angle = d->angle_rad + 2 * pi * number / d->fibre_count;
+  const double angle = d->angle_rad + 2 * DEA_PI * number / d->fibre_count;
   const double c = cos(angle), s = sin(angle);
   const double near = sqrt(at * at - half * half), far = sqrt(to * to - half * half);
   const double corner[5][2] = {{0.5 * (d->fibre_tip_radius_m + plan->piece_outer_m), 0},

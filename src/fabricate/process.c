@@ -12,8 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 // The file: HTML that needs nothing else ----------------------------------------------------------
 
 static const char style[] =
@@ -78,7 +76,7 @@ static double glued_area(const struct sheet *s, size_t ply)
     const struct dea_layout_electrode *e = &s->layout->electrodes[plan->pad[i].electrode];
     round += e->ply == ply && !e->top ? plan->pad_m * plan->pad_m : 0;
   }
-  return printed_area(s, ply, false) - pi * round / stretched_area(&s->layout->plies[ply]);
+  return printed_area(s, ply, false) - DEA_PI * round / stretched_area(&s->layout->plies[ply]);
 }
 
 /* Blanks of plies that are cut alike. */
@@ -129,7 +127,7 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
   out->ink_volume_m3 = ink > 0 ? out->ink_area_m2 * ink : NAN;
   out->bond_area_m2 = dea_region_area_m2(&plan->bonded);
   out->bond_volume_m3 = glue > 0 ? out->bond_area_m2 * glue : NAN;
-  out->frame_sheet_area_m2 = (plan->round ? pi : 4) * plan->frame_m[0] * plan->frame_m[1];
+  out->frame_sheet_area_m2 = (plan->round ? DEA_PI : 4) * plan->frame_m[0] * plan->frame_m[1];
 }
 
 // Bill of materials -------------------------------------------------------------------------------
@@ -158,7 +156,7 @@ static void add_ply(const struct sheet *s, size_t i)
   const size_t count = dea_ply_count_like(s->layout, i);
   const double area = area_of(s, ply->region);
   const double cut = film   ? blank_area(s, i)
-                     : tabs ? pi * s->w->plan.frame_m[0] * s->w->plan.frame_m[1]
+                     : tabs ? DEA_PI * s->w->plan.frame_m[0] * s->w->plan.frame_m[1]
                             : area * (double)count;
   double mass = area * dea_ply_stretched_layer_m(ply) * ply->material.density_kg_per_m3;
   char item[WORDS], note[WORDS], weight[64] = "mass unknown: the material has no density";

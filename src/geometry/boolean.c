@@ -17,7 +17,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 /* Height of an arc over its chords, as a part of the drawing's size, at the first attempt and at
  * the others. */
 static const double first_height = 1e-6, finer = 1.0 / 64;
@@ -122,7 +121,7 @@ static double angle_between(const struct dea_piece *circle, const double a[2], c
 {
   double from = atan2(a[1] - circle->centre[1], a[0] - circle->centre[0]);
   double to = atan2(b[1] - circle->centre[1], b[0] - circle->centre[0]);
-  return to > from ? to - from : to - from + 2 * pi;
+  return to > from ? to - from : to - from + 2 * DEA_PI;
 }
 
 static dea_status add_cut(struct work *w, size_t piece, const double x[2])
@@ -223,7 +222,7 @@ static size_t chord_count(const struct work *w, const struct edge *edge)
   }
   const struct dea_piece *circle = &w->all.piece[edge->circle];
   double sweep = angle_between(circle, w->node.point[edge->from], w->node.point[edge->to]);
-  double step = fmin(pi / 16, sqrt(8 * w->height_m / circle->radius_m));
+  double step = fmin(DEA_PI / 16, sqrt(8 * w->height_m / circle->radius_m));
   return (size_t)fmax(LEAST_CHORDS, ceil(sweep / step));
 }
 
@@ -409,7 +408,7 @@ static bool goes_on(const struct work *w, const struct found *a, const struct fo
     return false;
   }
   if (a->circle != SIZE_MAX) {
-    return a->sweep * b->sweep > 0 && fabs(a->sweep + b->sweep) <= 1.5 * pi;
+    return a->sweep * b->sweep > 0 && fabs(a->sweep + b->sweep) <= 1.5 * DEA_PI;
   }
   const double *p = w->node.point[a->node], *q = w->node.point[b->node];
   const double *s = w->node.point[after->node];

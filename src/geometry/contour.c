@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 size_t dea_contour_pieces(const struct dea_contour *contour)
 {
   return contour->count - (contour->closed || contour->count == 0 ? 0 : 1);
@@ -143,8 +141,8 @@ double dea_contour_length_m(const struct dea_contour *contour)
 bool dea_piece_faces(const struct dea_piece *arc, double angle)
 {
   double along = arc->sweep > 0 ? angle - arc->start : arc->start - angle;
-  along -= 2 * pi * floor(along / (2 * pi));
-  return along <= fabs(arc->sweep) || along >= 2 * pi - 1e-12;
+  along -= 2 * DEA_PI * floor(along / (2 * DEA_PI));
+  return along <= fabs(arc->sweep) || along >= 2 * DEA_PI - 1e-12;
 }
 
 static void grow(double box[4], double x, double y)
@@ -161,7 +159,7 @@ void dea_piece_grow_box(const struct dea_piece *piece, double box[4])
   grow(box, piece->to[0], piece->to[1]);
   for (int quarter = 0; piece->arc && quarter < 4; quarter++) {
     static const int x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
-    if (dea_piece_faces(piece, 0.5 * pi * quarter)) {
+    if (dea_piece_faces(piece, 0.5 * DEA_PI * quarter)) {
       grow(box, piece->centre[0] + x[quarter] * piece->radius_m,
            piece->centre[1] + y[quarter] * piece->radius_m);
     }
@@ -184,7 +182,9 @@ static double turn_along(const struct dea_piece *piece, double x, double y)
   double bx = piece->to[0] - x, by = piece->to[1] - y;
   double turn = atan2(ax * by - ay * bx, ax * bx + ay * by);
   if (piece->arc && hypot(x - piece->centre[0], y - piece->centre[1]) < piece->radius_m) {
-    turn += piece->sweep > 0 && turn < 0 ? 2 * pi : piece->sweep < 0 && turn > 0 ? -2 * pi : 0;
+    turn += piece->sweep > 0 && turn < 0   ? 2 * DEA_PI
+            : piece->sweep < 0 && turn > 0 ? -2 * DEA_PI
+                                           : 0;
   }
   return turn;
 }
@@ -206,7 +206,7 @@ bool dea_contour_inside(const struct dea_contour *contour, double x_m, double y_
     const struct dea_piece piece = dea_contour_piece(contour, i);
     turn += turn_along(&piece, x_m, y_m);
   }
-  return fabs(turn) > pi;
+  return fabs(turn) > DEA_PI;
 }
 
 bool dea_contour_is_circle(const struct dea_contour *contour, double centre[2], double *radius)

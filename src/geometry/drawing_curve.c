@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 static const double fit_m = 1e-7; // largest distance of curves from the arcs that they become
 
 enum { SAMPLES = 16, DEPTH_MAX = 12 };
@@ -115,13 +114,13 @@ static dea_status fit(struct dea_drawing *d, const struct curve *curve, const do
   for (int k = 1; k < SAMPLES; k++) {
     worst = fmax(worst, chord > 0 ? dea_piece_distance_m(&piece, x[k]) : dea_apart_m(x[k], last));
   }
-  double near = fit_m, quarters = fabs(half) / (0.25 * pi);
+  double near = fit_m, quarters = fabs(half) / (0.25 * DEA_PI);
   if (curve->cubic && depth == 0 && piece.arc && quarters < 1.05) {
     near = fmax(near, 4e-4 * piece.radius_m * pow(quarters, 6));
   }
-  if ((worst <= near && fabs(half) < 0.6 * pi) || depth == DEPTH_MAX) {
+  if ((worst <= near && fabs(half) < 0.6 * DEA_PI) || depth == DEPTH_MAX) {
     d->deviation_m = fmax(d->deviation_m, worst);
-    return add_arc(d, fabs(half) < 0.6 * pi ? ends[0].bulge : 0, last);
+    return add_arc(d, fabs(half) < 0.6 * DEA_PI ? ends[0].bulge : 0, last);
   }
   double centre = 0.5 * (between[0] + between[1]);
   DEA_TRY(d->ctx, fit(d, curve, (double[2]){between[0], centre}, depth + 1, middle));
@@ -163,8 +162,8 @@ dea_status dea_drawing_ellipse_to(struct dea_drawing *drawing, const struct dea_
   const struct dea_ellipse *e = ellipse;
   const struct curve curve = {ellipse_at, e, false};
   int sense = makes_circle(&d->matrix, e->first, e->second);
-  double quarters = ceil(fabs(e->sweep) / (0.5 * pi) - 1e-9);
-  int parts = sense != 0 ? (fabs(e->sweep) > pi ? 2 : 1) : (int)fmax(1, fmin(quarters, 4));
+  double quarters = ceil(fabs(e->sweep) / (0.5 * DEA_PI) - 1e-9);
+  int parts = sense != 0 ? (fabs(e->sweep) > DEA_PI ? 2 : 1) : (int)fmax(1, fmin(quarters, 4));
   double raw[2], end_m[2];
   ellipse_at(e, e->from, raw);
   DEA_TRY(d->ctx, start(d, raw));

@@ -12,7 +12,6 @@
 #include <string.h>
 #include <strings.h>
 
-static const double pi = 3.14159265358979323846;
 static const double flat = 1e-9; // of a normal's direction
 
 enum { DEPTH_MAX = 40 };
@@ -241,9 +240,9 @@ static dea_status add_arc(struct reader *r)
   const struct dea_ellipse circle = {{value(r, 10), value(r, 20)},
                                      {radius, 0},
                                      {0, radius},
-                                     arc ? from * pi / 180 : 0,
+                                     arc ? from * DEA_PI / 180 : 0,
                                      (!arc || sweep == 0 ? 360 : sweep + (sweep < 0 ? 360 : 0)) *
-                                         pi / 180};
+                                         DEA_PI / 180};
   if (radius <= 0) {
     return dea_drawing_fault(r->drawing, r->entity.line, "the radius of this %s is not above 0",
                              r->entity.type);
@@ -257,7 +256,7 @@ static dea_status add_arc(struct reader *r)
 static dea_status add_ellipse(struct reader *r)
 {
   double x = value(r, 11), y = value(r, 21), ratio = value_or(r, 40, 1);
-  double from = value(r, 41), sweep = fmod(value_or(r, 42, 2 * pi) - from, 2 * pi);
+  double from = value(r, 41), sweep = fmod(value_or(r, 42, 2 * DEA_PI) - from, 2 * DEA_PI);
   double side = value_or(r, 230, 1) < 0 ? -1 : 1;
   if (fabs(fabs(value_or(r, 230, 1)) - 1) > flat || fabs(value(r, 31)) > flat * hypot(x, y)) {
     return skip(r, not_flat);
@@ -265,13 +264,13 @@ static dea_status add_ellipse(struct reader *r)
   if (hypot(x, y) == 0 || ratio <= 0) {
     return dea_drawing_fault(r->drawing, r->entity.line, "an axis of this ELLIPSE has no length");
   }
-  bool full = fabs(sweep) < 1e-9 || fabs(fabs(sweep) - 2 * pi) < 1e-9;
+  bool full = fabs(sweep) < 1e-9 || fabs(fabs(sweep) - 2 * DEA_PI) < 1e-9;
   const struct dea_ellipse ellipse = {{value(r, 10), value(r, 20)},
                                       {x, y},
                                       {-side * ratio * y, side * ratio * x},
                                       full ? 0 : from,
-                                      full        ? 2 * pi
-                                      : sweep < 0 ? sweep + 2 * pi
+                                      full        ? 2 * DEA_PI
+                                      : sweep < 0 ? sweep + 2 * DEA_PI
                                                   : sweep};
   const double first[2] = {ellipse.centre[0] + x, ellipse.centre[1] + y};
   DEA_TRY(r->ctx, dea_drawing_ellipse_to(r->drawing, &ellipse, full ? first : NULL));
@@ -455,7 +454,7 @@ static dea_status add_insert(struct reader *r)
                              "blocks are inserted in each other more than %d deep", DEPTH_MAX);
   }
   const struct dea_affine outside = r->matrix, plane = r->drawing->matrix;
-  double angle = value(r, 50) * pi / 180, c = cos(angle), s = sin(angle);
+  double angle = value(r, 50) * DEA_PI / 180, c = cos(angle), s = sin(angle);
   double step[2] = {value(r, 44), value(r, 45)};
   const struct dea_affine turn = {c, s, -s, c, value(r, 10), value(r, 20)};
   struct dea_affine scale = {value_or(r, 41, 1), 0, 0, value_or(r, 42, 1), 0, 0};

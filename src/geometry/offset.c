@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* A piece, moved by the distance to its right; false when an arc shrinks to nothing. */
 static bool move_piece(struct dea_piece *piece, double distance)
 {
@@ -56,7 +54,7 @@ static bool goes_on(struct dea_piece *piece, const struct dea_piece *old)
   }
   double start = atan2(piece->from[1] - piece->centre[1], piece->from[0] - piece->centre[0]);
   double end = atan2(piece->to[1] - piece->centre[1], piece->to[0] - piece->centre[0]);
-  double sweep = end - start, full = 2 * pi, shift = floor((old->sweep - sweep) / full + 0.5);
+  double sweep = end - start, full = 2 * DEA_PI, shift = floor((old->sweep - sweep) / full + 0.5);
   piece->start = start;
   piece->sweep = sweep + full * shift; // the one next to the old sweep
   return piece->sweep * old->sweep > 0;

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double pi = 3.14159265358979323846;
 static const char crosses_itself[] = "the contour crosses or touches itself";
 
 dea_status dea_region_fault(struct dea_context *ctx, struct dea_location location, double x_m,
@@ -95,7 +94,7 @@ static double fraction_of(const struct dea_piece *p, const double x[2], double s
   }
   double along =
       (atan2(x[1] - p->centre[1], x[0] - p->centre[0]) - p->start) * (p->sweep > 0 ? 1 : -1);
-  return (along - 2 * pi * floor(along / (2 * pi))) / fabs(p->sweep);
+  return (along - 2 * DEA_PI * floor(along / (2 * DEA_PI))) / fabs(p->sweep);
 }
 
 /* Whether pieces that meet more than once lie on each other in between. */

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double pi = 3.14159265358979323846;
-
 #define SHAPE(id, what, parameters)                                                                \
   const struct dea_shape_type dea_shape_##id = {                                                   \
       .name = #id,                                                                                 \
@@ -89,7 +87,7 @@ static dea_status add_ring_sector(struct dea_region *region, const double *centr
   if (inner >= outer) {
     return fault(region, location, "the sector's inner radius is not below the outer one");
   }
-  if (!(sweep > 0 && sweep < 2 * pi)) {
+  if (!(sweep > 0 && sweep < 2 * DEA_PI)) {
     return fault(region, location,
                  "the sector does not end within a turn counter-clockwise of its start");
   }
@@ -153,7 +151,7 @@ static void add_without_gaps(struct dea_region *region, struct dea_vertex *v, si
 ADD(rounded_rectangle)
 {
   NO_POINTS;
-  double a = 0.5 * value[2], b = 0.5 * value[3], r = value[4], bulge = tan(pi / 8);
+  double a = 0.5 * value[2], b = 0.5 * value[3], r = value[4], bulge = tan(DEA_PI / 8);
   if (r > fmin(a, b)) {
     return fault(region, location,
                  "the corners' radius is larger than half of the shorter side of the rectangle");

@@ -9,8 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 static const double px_m = 25.4e-3 / 96; // of CSS
 
 enum { DEPTH_MAX = 200, CHUNK = 1 << 20 };
@@ -140,7 +138,7 @@ static dea_status read_lengths(struct reader *r, const char **attributes, const 
 
 static bool transform_of(const char *name, const double *v, int count, struct dea_affine *out)
 {
-  double angle = count > 0 ? v[0] * pi / 180 : 0, c = cos(angle), s = sin(angle);
+  double angle = count > 0 ? v[0] * DEA_PI / 180 : 0, c = cos(angle), s = sin(angle);
   if (strcmp(name, "matrix") == 0 && count == 6) {
     *out = (struct dea_affine){v[0], v[1], v[2], v[3], v[4], v[5]};
   } else if (strcmp(name, "translate") == 0 && (count == 1 || count == 2)) {
@@ -222,7 +220,7 @@ static dea_status add_arc(struct reader *r, const double centre[2], const double
 static dea_status add_path_arc(struct reader *r, const double p[2], const double v[5],
                                const double q[2])
 {
-  double radius[2] = {fabs(v[0]), fabs(v[1])}, turn = v[2] * pi / 180;
+  double radius[2] = {fabs(v[0]), fabs(v[1])}, turn = v[2] * DEA_PI / 180;
   if (radius[0] == 0 || radius[1] == 0 || (p[0] == q[0] && p[1] == q[1])) {
     return add_vertex(r, q[0], q[1]);
   }
@@ -241,9 +239,9 @@ static dea_status add_path_arc(struct reader *r, const double p[2], const double
   double from = atan2((y - w) / radius[1], (x - u) / radius[0]);
   double sweep = atan2((-y - w) / radius[1], (-x - u) / radius[0]) - from;
   if (v[4] != 0 && sweep < 0) {
-    sweep += 2 * pi;
+    sweep += 2 * DEA_PI;
   } else if (v[4] == 0 && sweep > 0) {
-    sweep -= 2 * pi;
+    sweep -= 2 * DEA_PI;
   }
   return add_arc(r, centre, radius, turn, from, sweep, q);
 }
@@ -388,7 +386,7 @@ static dea_status read_ellipse(struct reader *r, const char **attributes, bool c
   if (v[2] <= 0 || v[3] <= 0) {
     return DEA_OK; // not drawn, says SVG
   }
-  DEA_TRY(r->ctx, add_arc(r, v, v + 2, 0, 0, 2 * pi, (double[2]){v[0] + v[2], v[1]}));
+  DEA_TRY(r->ctx, add_arc(r, v, v + 2, 0, 0, 2 * DEA_PI, (double[2]){v[0] + v[2], v[1]}));
   return end_path(r, true);
 }
 
@@ -414,11 +412,11 @@ static dea_status read_rect(struct reader *r, const char **attributes)
     }
     const double centre[2] = {cx + (right[k] ? -1 : 1) * radius[0],
                               cy + (down[k] ? -1 : 1) * radius[1]};
-    double from = (k - 1) * 0.5 * pi;
+    double from = (k - 1) * 0.5 * DEA_PI;
     static const int cosine[5] = {0, 1, 0, -1, 0}, sine[5] = {-1, 0, 1, 0, -1};
     DEA_TRY(r->ctx,
             add_vertex(r, centre[0] + radius[0] * cosine[k], centre[1] + radius[1] * sine[k]));
-    DEA_TRY(r->ctx, add_arc(r, centre, radius, 0, from, 0.5 * pi,
+    DEA_TRY(r->ctx, add_arc(r, centre, radius, 0, from, 0.5 * DEA_PI,
                             (double[2]){centre[0] + radius[0] * cosine[k + 1],
                                         centre[1] + radius[1] * sine[k + 1]}));
   }

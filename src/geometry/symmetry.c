@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 enum kind { LINE, ARC, ROUND };
 
 /* A line, an arc or a whole circle, as long as it goes, so that nothing depends on where the
@@ -184,12 +182,12 @@ static size_t find_order(const struct finder *f, size_t first, size_t count)
   double start = direction(f, first);
   for (size_t k = 1; k < count; k++) {
     double angle = direction(f, first + k) - start;
-    angle += angle < 0 ? 2 * pi : 0;
-    double turns = floor(2 * pi / angle + 0.5);
+    angle += angle < 0 ? 2 * DEA_PI : 0;
+    double turns = floor(2 * DEA_PI / angle + 0.5);
     // the least rotation is a whole part of a turn, and reaches no more places than there are
     if (turns > (double)order && turns <= (double)count &&
-        fabs(turns * angle - 2 * pi) * f->feature[first].distance <= 4 * turns * f->tolerance) {
-      const struct dea_motion motion = dea_motion_rotation(f->centre, 2 * pi / turns);
+        fabs(turns * angle - 2 * DEA_PI) * f->feature[first].distance <= 4 * turns * f->tolerance) {
+      const struct dea_motion motion = dea_motion_rotation(f->centre, 2 * DEA_PI / turns);
       order = is_symmetry(f, &motion) ? (size_t)turns : order;
     }
   }
@@ -200,7 +198,7 @@ static void find_mirrors(const struct finder *f, size_t first, size_t count,
                          struct dea_symmetry *out)
 {
   double start = direction(f, first);
-  out->step_rad = pi / (double)out->order;
+  out->step_rad = DEA_PI / (double)out->order;
   for (size_t k = 0; k < count && out->mirrors == 0; k++) {
     double angle = 0.5 * (start + direction(f, first + k));
     const struct dea_motion motion = dea_motion_mirror(f->centre, angle);

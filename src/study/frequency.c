@@ -156,7 +156,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_study_job *job)
 
 // What moves -------------------------------------------------------------------------------------
 
-static const double pi = 3.14159265358979323846;
 static const double least_share = 1e-4; // of the largest amplitude: a monitor's less is not shown
 static const char along_x[] = "_x_amplitude_m";
 
@@ -313,11 +312,12 @@ static dea_status add_line(struct dea_context *ctx, struct dea_plot *plot, const
     series->title[0] = p == 0 ? series->title[0] : '\0';
     for (size_t i = 0; i < line->count; i++) {
       double phase = value_at(line, line->phase, i); // the first is drawn from -90 to 270 degrees
-      double turns = i == 0 ? (phase < -0.5 * pi ? 1 : 0) : round((before - phase) / (2 * pi));
-      before = phase + 2 * pi * turns;
+      double turns =
+          i == 0 ? (phase < -0.5 * DEA_PI ? 1 : 0) : round((before - phase) / (2 * DEA_PI));
+      before = phase + 2 * DEA_PI * turns;
       series->values[i] = line->points[i].frequency_Hz;
       series->values[line->count + i] =
-          p == 0 ? 1e9 * value_at(line, line->amplitude, i) : before * 180 / pi;
+          p == 0 ? 1e9 * value_at(line, line->amplitude, i) : before * 180 / DEA_PI;
     }
   }
   return DEA_OK;
