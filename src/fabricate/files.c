@@ -16,8 +16,8 @@ struct file {
   const char *name; // of a sheet what follows the name of its part
   dea_status (*text)(const struct dea_workshop *workshop, size_t index, struct dea_text *out);
   enum dea_canvas_format format;
-  void (*size)(const struct dea_workshop *workshop, double out_mm[2]);
-  void (*draw)(const struct dea_paper *paper, const struct dea_workshop *workshop);
+  dea_status (*size)(const struct dea_workshop *workshop, double out_mm[2]);
+  dea_status (*draw)(const struct dea_paper *paper, const struct dea_workshop *workshop);
 };
 
 /* The shapes of the layout. */
@@ -88,8 +88,8 @@ dea_status dea_workshop_prepare(struct dea_context *ctx, const struct dea_worksh
   return dea_folder_create(ctx, directory);
 }
 
-/* Draws a page or pages and gives the file; paper->canvas: to be destroyed, NULL after a failure.
- */
+/* Draws a page or pages and gives the file; paper->canvas: to be destroyed where not NULL, also
+ * after a failure. */
 static dea_status draw(struct dea_context *ctx, const struct dea_workshop *workshop,
                        const struct file *file, struct dea_paper *paper, const char **bytes,
                        size_t *length)
@@ -97,10 +97,10 @@ static dea_status draw(struct dea_context *ctx, const struct dea_workshop *works
   const char *title = workshop->plan.design->title.text;
   double size[2];
   DEA_TRY(ctx, dea_canvas_open(ctx, &paper->type));
-  file->size(workshop, size);
+  DEA_TRY(ctx, file->size(workshop, size));
   DEA_TRY(ctx, paper->type->create(ctx, file->format, size[0], size[1],
                                    title[0] != '\0' ? title : "Actuator", &paper->canvas));
-  file->draw(paper, workshop);
+  DEA_TRY(ctx, file->draw(paper, workshop));
   return paper->type->finish(paper->canvas, bytes, length);
 }
 

@@ -33,9 +33,10 @@ static void part_page(const struct dea_part *part, double out[2])
   page_size(1e3 * (box[2] - box[0]) + 2 * 68, 1e3 * (box[3] - box[1]) + 2 * 30, out);
 }
 
-void dea_pages_first_size(const struct dea_workshop *workshop, double out_mm[2])
+dea_status dea_pages_first_size(const struct dea_workshop *workshop, double out_mm[2])
 {
   part_page(&workshop->part[0], out_mm);
+  return DEA_OK;
 }
 
 static void add_contours(const struct dea_paper *paper, const struct dea_part *part,
@@ -170,7 +171,7 @@ static void draw_sheet_page(const struct dea_paper *paper, const struct dea_work
   }
 }
 
-void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *workshop)
+dea_status dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *workshop)
 {
   for (size_t i = 0; i < workshop->count; i++) {
     double size[2];
@@ -188,4 +189,5 @@ void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *wo
       draw_sheet_page(paper, workshop, i);
     }
   }
+  return DEA_OK;
 }

@@ -4,6 +4,6 @@
 #include "fabricate/workshop.h"
 #include "figures/canvas.h"
 
-/* Draws all pages on a canvas that begins with a page of dea_pages_first_size. */
-void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *workshop);
-void dea_pages_first_size(const struct dea_workshop *workshop, double out_mm[2]);
+/* Draws all pages on a canvas that begins with a page of dea_pages_first_size. Neither fails. */
+dea_status dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *workshop);
+dea_status dea_pages_first_size(const struct dea_workshop *workshop, double out_mm[2]);

@@ -12,13 +12,16 @@ struct picture {
   struct dea_context *ctx;
   struct dea_drawn_shape *shapes; // [count] owned
   size_t count, capacity;
+  bool failed; // for want of memory
   char below[256];
   struct dea_device_drawing drawing;
 };
 
 static void add(struct picture *p, struct dea_contour contour, const struct dea_drawn_shape *look)
 {
-  if (dea_array_grow(p->ctx, &p->shapes, p->count, &p->capacity, sizeof *p->shapes) == DEA_OK) {
+  p->failed = p->failed || dea_array_grow(p->ctx, &p->shapes, p->count, &p->capacity,
+                                          sizeof *p->shapes) != DEA_OK;
+  if (!p->failed) {
     p->shapes[p->count] = *look;
     p->shapes[p->count++].contour = contour;
   }
@@ -83,18 +86,20 @@ static void build(struct picture *p, const struct dea_workshop *w)
                                            p->shapes, p->count};
 }
 
-void dea_picture_size(const struct dea_workshop *workshop, double out_mm[2])
+dea_status dea_picture_size(const struct dea_workshop *workshop, double out_mm[2])
 {
   struct picture p = {0};
   build(&p, workshop);
   dea_device_drawing_size(&p.drawing, out_mm);
   dea_free(p.ctx, p.shapes);
+  return p.failed ? DEA_E_MEMORY : DEA_OK;
 }
 
-void dea_picture_draw(const struct dea_paper *paper, const struct dea_workshop *workshop)
+dea_status dea_picture_draw(const struct dea_paper *paper, const struct dea_workshop *workshop)
 {
   struct picture p = {0};
   build(&p, workshop);
   dea_device_drawing_draw(paper, &p.drawing);
   dea_free(p.ctx, p.shapes);
+  return p.failed ? DEA_E_MEMORY : DEA_OK;
 }

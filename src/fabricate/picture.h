@@ -5,5 +5,6 @@
 #include "fabricate/workshop.h"
 #include "figures/canvas.h"
 
-void dea_picture_size(const struct dea_workshop *workshop, double out_mm[2]);
-void dea_picture_draw(const struct dea_paper *paper, const struct dea_workshop *workshop);
+/* DEA_E_MEMORY is the only failure of both. */
+dea_status dea_picture_size(const struct dea_workshop *workshop, double out_mm[2]);
+dea_status dea_picture_draw(const struct dea_paper *paper, const struct dea_workshop *workshop);
