@@ -55,7 +55,8 @@ struct dea_result_handle {
   struct api_texts texts;
   struct api_mesh **meshes; // [mesh_count]
   size_t mesh_count;
-  struct dea_text summary, svg;
+  char *summary; // NULL: not asked for yet
+  struct dea_text svg;
 };
 
 /* A mesh with what its public form points to. */

@@ -246,7 +246,7 @@ static void clear(struct dea_result_handle *result)
   }
   dea_arena_free(&result->texts.memory);
   dea_arena_free(&result->memory);
-  dea_text_free(&result->summary);
+  dea_free(ctx, result->summary);
   dea_text_free(&result->svg);
   if (result->run != NULL) {
     dea_run_destroy(ctx, result->run);
@@ -270,11 +270,8 @@ void dea_result_free(dea_result *result)
 static struct dea_result_handle empty_handle(dea_context *ctx)
 {
   struct dea_context *inner = ctx->inner;
-  return (struct dea_result_handle){.ctx = ctx,
-                                    .memory = {.ctx = inner},
-                                    .texts.memory = {.ctx = inner},
-                                    .summary = {.ctx = inner},
-                                    .svg = {.ctx = inner}};
+  return (struct dea_result_handle){
+      .ctx = ctx, .memory = {.ctx = inner}, .texts.memory = {.ctx = inner}, .svg = {.ctx = inner}};
 }
 
 /* A handle for what was computed; takes the contents, also on failure. */
@@ -327,14 +324,11 @@ dea_status dea_result_array(dea_context *ctx, const dea_result *result, const ch
 static dea_status get_summary(dea_context *ctx, dea_result *result, const char **out)
 {
   DEA_TRY(ctx->inner, api_check_owner(ctx, result->ctx, "result"));
-  if (result->summary.length == 0) {
-    char *text;
-    DEA_TRY(ctx->inner, dea_summary_text(ctx->inner, result->inner, &text));
-    dea_text_add(&result->summary, "%s", text);
-    dea_free(ctx->inner, text);
+  if (result->summary == NULL) {
+    DEA_TRY(ctx->inner, dea_summary_text(ctx->inner, result->inner, &result->summary));
   }
-  *out = dea_text_get(&result->summary);
-  return result->summary.failed ? DEA_E_MEMORY : DEA_OK;
+  *out = result->summary;
+  return DEA_OK;
 }
 
 dea_status dea_result_text(dea_context *ctx, dea_result *result, const char *name, const char **out)
