@@ -13,5 +13,3 @@ dea_status cli_bench_importers(struct dea_cli *cli, struct dea_text *out);
 dea_status cli_bench_protocol_keys(struct dea_cli *cli, struct dea_text *out);
 /* The keys of a protocol, or of a mapping of imported columns; freed by dea_free. */
 dea_status cli_bench_schema(struct dea_context *ctx, bool protocol, struct dea_record **out);
-/* Path of the module for .mat files into out[size]; false when it is not here. */
-bool cli_bench_find_matio(char *out, size_t size);

@@ -1,11 +1,9 @@
 #define _POSIX_C_SOURCE 200809L // access, getcwd
+#include "base/module.h"
 #include "base/program.h"
-#include "base/text.h"
 #include "base/version.h"
 #include "cli/bench.h"
 #include "cli/cli.h"
-#include "fabricate/cairo_canvas.h"
-#include "geometry/boolean.h"
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "result/provenance.h"
@@ -112,31 +110,27 @@ static void check_terminal(const struct dea_context *ctx, const char *terminal)
 
 /* Modules, with what they need and what there is not without them. */
 static const struct module {
-  const char *what;
-  bool (*find)(char *path, size_t size);
-  const char *file, *packages, *without;
+  const char *what, *name, *packages, *without;
 } modules[] = {
-    {"3D engine", dea_solid_module_find, "dea_solid_module",
-     "libpetsc-real-dev and libslepc-real-dev", "there is no model 3d"},
-    {"drawings of dea fab", dea_canvas_find, "dea_cairo_module", "libcairo2-dev",
-     "dea fab writes DXF and SVG only"},
-    {"booleans of regions", dea_boolean_find, "dea_geos_module", "libgeos-dev",
-     "regions are not united or cut"},
-    {".mat files", cli_bench_find_matio, "dea_matio_module", "libmatio-dev",
-     "files are exchanged as CSV"},
+    {"3D engine", "dea_solid_module", "libpetsc-real-dev and libslepc-real-dev",
+     "there is no model 3d"},
+    {"drawings of dea fab", "dea_cairo_module", "libcairo2-dev", "dea fab writes DXF and SVG only"},
+    {"booleans of regions", "dea_geos_module", "libgeos-dev", "regions are not united or cut"},
+    {".mat files", "dea_matio_module", "libmatio-dev", "files are exchanged as CSV"},
 };
 
 /* A module is of this build where its packages were there when that was configured. */
 static void check_module(const struct module *module)
 {
-  char advice[400], path[4096];
-  const bool of_build = strstr(DEA_MODULES_OF_BUILD, module->file) != NULL;
-  const bool ok = module->find(path, sizeof path);
+  char advice[400], file[40], path[4096];
+  const bool of_build = strstr(DEA_MODULES_OF_BUILD, module->name) != NULL;
+  snprintf(file, sizeof file, "%s.so", module->name);
+  const bool ok = dea_module_find(file, path, sizeof path);
   if (of_build) {
     snprintf(advice, sizeof advice,
-             "%s.so belongs to this build, but is in none of its folders: build all of it, or "
+             "%s belongs to this build, but is in none of its folders: build all of it, or "
              "install it again; without it %s",
-             module->file, module->without);
+             file, module->without);
   } else {
     snprintf(advice, sizeof advice, "install %s, and build again; without it %s", module->packages,
              module->without);

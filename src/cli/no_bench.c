@@ -65,10 +65,3 @@ dea_status cli_bench_schema(struct dea_context *ctx, bool protocol, struct dea_r
   *out = NULL;
   return fail(ctx);
 }
-
-bool cli_bench_find_matio(char *out, size_t size)
-{
-  (void)out;
-  (void)size;
-  return false;
-}

@@ -1,7 +1,6 @@
 #include "cli/bench.h"
 
 #include "import/import.h"
-#include "import/mat.h"
 #include "instrument/instrument.h"
 
 void cli_bench_enter(char **argv)
@@ -40,9 +39,4 @@ dea_status cli_bench_schema(struct dea_context *ctx, bool protocol, struct dea_r
   }
   *out = &schema->record; // its first member
   return DEA_OK;
-}
-
-bool cli_bench_find_matio(char *out, size_t size)
-{
-  return dea_mat_find(out, size);
 }
