@@ -85,10 +85,7 @@ dea_status dea_folder_lock(struct dea_context *ctx, const char *directory,
   lock->file = -1;
   dea_status status = dea_path_build(ctx, directory, DEA_FOLDER_LOCK_FILE, lock->path);
   status = status == DEA_OK ? acquire(ctx, directory, lock) : status;
-  if (status != DEA_OK) {
-    release(ctx, lock);
-    return status;
-  }
+  DEA_TRY_ELSE(ctx, status, release(ctx, lock));
   *out = lock;
   return DEA_OK;
 }

@@ -404,13 +404,11 @@ dea_status dea_design_read_memory_with(struct dea_context *ctx,
                                        struct dea_design **out)
 {
   const struct source source = {sections, name, bytes, length, overrides, override_count};
-  DEA_TRY(ctx, read_source(ctx, &source, NULL, out));
-  dea_status status = read_variants(ctx, &source, *out);
-  if (status != DEA_OK) {
-    dea_design_destroy(ctx, *out);
-    *out = NULL;
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  struct dea_design *design;
+  *out = NULL;
+  DEA_TRY(ctx, read_source(ctx, &source, NULL, &design));
+  DEA_TRY_ELSE(ctx, read_variants(ctx, &source, design), dea_design_destroy(ctx, design));
+  *out = design;
   return DEA_OK;
 }
 

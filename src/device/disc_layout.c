@@ -288,12 +288,10 @@ static dea_status fill(struct dea_context *ctx, const struct dea_device *d, bool
 dea_status dea_disc_layout_create(struct dea_context *ctx, const struct dea_device *d,
                                   bool membrane, struct dea_layout **out)
 {
-  DEA_TRY(ctx, dea_layout_create(ctx, out));
-  dea_status status = fill(ctx, d, membrane, *out);
-  if (status != DEA_OK) {
-    dea_layout_destroy(ctx, *out);
-    *out = NULL;
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  struct dea_layout *layout;
+  *out = NULL;
+  DEA_TRY(ctx, dea_layout_create(ctx, &layout));
+  DEA_TRY_ELSE(ctx, fill(ctx, d, membrane, layout), dea_layout_destroy(ctx, layout));
+  *out = layout;
   return DEA_OK;
 }

@@ -394,11 +394,7 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
   const struct dea_layout *l = w->plan.layout;
   struct dea_context *ctx = w->memory.ctx;
   struct dea_region openings = {.ctx = ctx};
-  dea_status status = gather(ctx, &w->plan, ply, top, &openings);
-  if (status != DEA_OK) {
-    dea_region_free(&openings);
-    return status;
-  }
+  DEA_TRY_ELSE(ctx, gather(ctx, &w->plan, ply, top, &openings), dea_region_free(&openings));
   struct sheet s = start(w, top ? DEA_PART_TOP : DEA_PART_BOTTOM, ply,
                          "Stencil of the electrodes on the %s of '%.60s'", top ? "top" : "bottom",
                          l->plies[ply].name);

@@ -128,15 +128,11 @@ static dea_status build(struct dea_context *ctx, const struct dea_design *design
 dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design *design,
                                const struct dea_device *device, struct dea_workshop **out)
 {
+  struct dea_workshop *w = dea_alloc(ctx, 1, sizeof *w);
   *out = NULL;
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  dea_status status = build(ctx, design, device, *out);
-  if (status != DEA_OK) {
-    dea_workshop_destroy(ctx, *out);
-    *out = NULL;
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_MEMORY(w != NULL);
+  DEA_TRY_ELSE(ctx, build(ctx, design, device, w), dea_workshop_destroy(ctx, w));
+  *out = w;
   return DEA_OK;
 }
 

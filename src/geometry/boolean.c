@@ -588,8 +588,6 @@ dea_status dea_region_combine(struct dea_context *ctx, enum dea_boolean what,
   dea_free(ctx, w.edge);
   dea_point_map_free(&w.node);
   dea_pieces_free(&w.all);
-  if (status != DEA_OK) {
-    dea_region_free(out);
-  }
-  return status;
+  DEA_TRY_ELSE(ctx, status, dea_region_free(out));
+  return DEA_OK;
 }

@@ -44,10 +44,8 @@ dea_status dea_pieces_build(struct dea_context *ctx, const struct dea_region *co
   }
   dea_status status = dea_arena_status(&p->arena);
   status = status == DEA_OK ? build_tree(ctx, p) : status;
-  if (status != DEA_OK) {
-    dea_pieces_free(p);
-  }
-  return status;
+  DEA_TRY_ELSE(ctx, status, dea_pieces_free(p));
+  return DEA_OK;
 }
 
 void dea_pieces_free(struct dea_pieces *pieces)

@@ -244,8 +244,6 @@ dea_status dea_drawing_region(const struct dea_drawing *drawing, const char *lay
                               "the layer lies so far from the drawing's origin that rounding "
                               "leaves its contours no area");
   }
-  if (status != DEA_OK) {
-    dea_region_free(out);
-  }
-  return status;
+  DEA_TRY_ELSE(d->ctx, status, dea_region_free(out));
+  return DEA_OK;
 }

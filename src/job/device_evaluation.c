@@ -356,11 +356,8 @@ dea_status dea_device_model_points(struct dea_device_model *model, const double 
     DEA_TRY_MEMORY(model->states != NULL);
   }
   struct dea_load_point *points = dea_alloc(model->ctx, model->stop_count, sizeof *points);
-  dea_status status = points != NULL ? evaluate(model, p, points) : DEA_E_MEMORY;
-  if (status != DEA_OK) {
-    dea_free(model->ctx, points);
-    return status;
-  }
+  DEA_TRY_MEMORY(points != NULL);
+  DEA_TRY_ELSE(model->ctx, evaluate(model, p, points), dea_free(model->ctx, points));
   struct dea_device_memo *memo = &model->memo[model->memo_next++ % DEA_DEVICE_MEMO];
   dea_free(model->ctx, memo->points);
   memcpy(memo->p, p, model->param_count * sizeof *p);
