@@ -303,7 +303,7 @@ enum { SPRING_POINTS = 8 };
 static const double spring_mm[SPRING_POINTS] = {0, 0.5, 1, 2, 3, 4, 6, 8};
 static const double spring_mN[SPRING_POINTS] = {100, 97, 96, 160, 330, 400, 430, 430};
 
-static struct dea_spring *spring_create(const struct cone *it)
+static struct dea_spring *spring_create(const struct cone *it, struct dea_arena *memory)
 {
   double at[SPRING_POINTS], force[SPRING_POINTS];
   struct dea_spring *spring;
@@ -313,7 +313,7 @@ static struct dea_spring *spring_create(const struct cone *it)
   }
   const struct dea_spring_options options = {
       .node = it->hub.node, .component = 2, .count = SPRING_POINTS, .at = at, .force = force};
-  verify_ok(ctx, dea_spring_create(ctx, &options, &spring));
+  verify_ok(ctx, dea_spring_create(ctx, &options, memory, &spring));
   return spring;
 }
 
@@ -403,7 +403,8 @@ static void sweep(struct cone *it, const double kV[2], const double limit_mm[2],
 static void check_bistable(const struct mesh *mesh, bool print)
 {
   struct cone film = cone_create(mesh), sprung = cone_create(mesh);
-  struct dea_spring *spring = spring_create(&sprung);
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_spring *spring = spring_create(&sprung, &memory);
   const struct dea_solid_load load = dea_spring_load(spring);
   double wanted[2], at[2], kV[2] = {NAN, NAN}, mm[2] = {NAN, NAN};
   wanted[0] = extreme_of(&film, spring, 1, 2, 1, &at[0]);
@@ -429,7 +430,7 @@ static void check_bistable(const struct mesh *mesh, bool print)
   sweep(&sprung, wanted, at, print);
   cone_destroy(&film);
   cone_destroy(&sprung);
-  dea_spring_destroy(ctx, spring);
+  dea_arena_free(&memory);
 }
 
 /* ---- the page ---- */

@@ -14,7 +14,7 @@ struct shell {
   double H; // thickness
   struct dea_grid *grid;
   struct dea_solid *solid;
-  struct dea_surface *inside;
+  struct dea_arena memory; // of the load
   struct dea_pressure *pressure;
 };
 
@@ -31,8 +31,11 @@ static void shell_fill(struct shell *shell, int (*held)(const void *self, const 
   const struct dea_solid_options options = {
       .order_z = 2, .part_material_count = 1, .part_materials = &rubber, .held = held};
   verify_ok(ctx, dea_solid_create(ctx, shell->grid, &options, &shell->solid));
-  verify_ok(ctx, dea_surface_create(ctx, shell->grid, DEA_FACE_BOTTOM, NULL, NULL, &shell->inside));
-  verify_ok(ctx, dea_pressure_create(ctx, shell->inside, origin, &shell->pressure));
+  struct dea_surface *inside;
+  shell->memory.ctx = ctx;
+  verify_ok(ctx, dea_surface_create(ctx, shell->grid, DEA_FACE_BOTTOM, NULL, NULL, &shell->memory,
+                                    &inside));
+  verify_ok(ctx, dea_pressure_create(ctx, inside, origin, &shell->memory, &shell->pressure));
   const struct dea_solid_load load = dea_pressure_load(shell->pressure);
   verify_ok(ctx, dea_solid_add_load(ctx, shell->solid, &load));
 }
@@ -40,8 +43,7 @@ static void shell_fill(struct shell *shell, int (*held)(const void *self, const 
 static void shell_destroy(struct shell *shell)
 {
   dea_solid_destroy(ctx, shell->solid);
-  dea_pressure_destroy(ctx, shell->pressure);
-  dea_surface_destroy(ctx, shell->inside);
+  dea_arena_free(&shell->memory);
   dea_grid_destroy(ctx, shell->grid);
 }
 

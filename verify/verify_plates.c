@@ -88,6 +88,7 @@ static struct plate plate_create(const struct problem *problem, int order, const
       .order_z = 2, .part_material_count = 1, .part_materials = &layer, .held = not_held};
   const double traction[3] = {0, 0, problem->traction};
   struct plate plate = {.grid = unit_square(order, count, problem->thickness)};
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_surface *end;
   size_t nodes = plate.grid->node_count;
   bool *clamped = dea_alloc(ctx, nodes, sizeof *clamped);
@@ -96,8 +97,8 @@ static struct plate plate_create(const struct problem *problem, int order, const
     exit(1);
   }
   memset(plate.force, 0, nodes * 3 * sizeof *plate.force);
-  verify_ok(ctx,
-            dea_surface_create(ctx, plate.grid, DEA_FACE_SECOND_HIGH, at_loaded_end, NULL, &end));
+  verify_ok(ctx, dea_surface_create(ctx, plate.grid, DEA_FACE_SECOND_HIGH, at_loaded_end, NULL,
+                                    &memory, &end));
   for (size_t n = 0; n < nodes; n++) {
     double *X = plate.grid->X + 3 * n, x[2];
     clamped[n] = X[1] < 1e-9;
@@ -110,7 +111,7 @@ static struct plate plate_create(const struct problem *problem, int order, const
     memcpy(X, x, sizeof x);
   }
   dea_load_traction(end, traction, plate.force);
-  dea_surface_destroy(ctx, end);
+  dea_arena_free(&memory);
   verify_ok(ctx, dea_solid_create(ctx, plate.grid, &options, &plate.solid));
   for (size_t n = 0; n < nodes; n++) {
     if (clamped[n]) {

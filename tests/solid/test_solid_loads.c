@@ -11,6 +11,7 @@
 static struct dea_hex_shape shape;
 static struct dea_grid *grid;
 static double *u;
+static struct dea_arena memory; // of surfaces and loads
 
 /* A block of 3 x 2 x 1.5 that is bent and moved by u, about a tenth of its size. */
 static const double size[3] = {3, 2, 1.5};
@@ -26,6 +27,7 @@ static void block_create(int order, int order_z, double amount)
   static const double cuts[] = {0, 0.4, 1};
   const struct dea_block block = {map_block, NULL, cuts, cuts, 2, 2, 7};
   const struct dea_ply ply = {size[2], 2, order_z};
+  memory.ctx = ctx;
   assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
   assert_int_equal(dea_grid_create(ctx, order, &block, 1, &ply, 1, NULL, 0.3, 3, &grid), DEA_OK);
   u = calloc(3 * grid->node_count, sizeof *u);
@@ -41,6 +43,7 @@ static void block_create(int order, int order_z, double amount)
 static void block_destroy(void)
 {
   free(u);
+  dea_arena_free(&memory);
   dea_grid_destroy(ctx, grid);
 }
 
@@ -53,7 +56,7 @@ static bool all(const void *self, int region, int ply, const double middle[3])
 static struct dea_surface *side_create(enum dea_face side)
 {
   struct dea_surface *surface;
-  assert_int_equal(dea_surface_create(ctx, grid, side, all, NULL, &surface), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, side, all, NULL, &memory, &surface), DEA_OK);
   return surface;
 }
 
@@ -147,7 +150,7 @@ TEST(test_derivatives_of_enclosed_volumes)
     struct dea_surface *surface = side_create(k < 2 ? DEA_FACE_TOP : DEA_FACE_BOTTOM);
     struct dea_pressure *pressure;
     double slope = 0, largest = 0;
-    assert_int_equal(dea_pressure_create_flat(ctx, surface, 0.2, &pressure), DEA_OK);
+    assert_int_equal(dea_pressure_create_flat(ctx, surface, 0.2, &memory, &pressure), DEA_OK);
     dea_pressure_enclose(pressure, &enclosed[k % 2]);
     dea_pressure_set(pressure, 0.3);
     struct dea_solid_load load = dea_pressure_load(pressure);
@@ -171,8 +174,6 @@ TEST(test_derivatives_of_enclosed_volumes)
     for (size_t i = 0; i < count; i++) {
       assert_close(Kv[i], (up[i] - down[i]) / (2 * d), 0, 1e-7 * largest);
     }
-    dea_pressure_destroy(ctx, pressure);
-    dea_surface_destroy(ctx, surface);
   }
   free(capacity);
   block_destroy();
@@ -186,19 +187,16 @@ TEST(test_derivatives)
     for (int side = DEA_FACE_FIRST_LOW; side <= DEA_FACE_TOP; side++) {
       struct dea_surface *surface = side_create((enum dea_face)side);
       struct dea_pressure *pressure;
-      assert_int_equal(dea_pressure_create(ctx, surface, origin, &pressure), DEA_OK);
+      assert_int_equal(dea_pressure_create(ctx, surface, origin, &memory, &pressure), DEA_OK);
       dea_pressure_set(pressure, 3);
       struct dea_solid_load load = dea_pressure_load(pressure);
       set_parameters(&load);
       check_derivatives(&load);
-      dea_pressure_destroy(ctx, pressure);
-      assert_int_equal(dea_pressure_create_flat(ctx, surface, 0.2, &pressure), DEA_OK);
+      assert_int_equal(dea_pressure_create_flat(ctx, surface, 0.2, &memory, &pressure), DEA_OK);
       dea_pressure_set(pressure, 3);
       load = dea_pressure_load(pressure);
       set_parameters(&load);
       check_derivatives(&load);
-      dea_pressure_destroy(ctx, pressure);
-      dea_surface_destroy(ctx, surface);
     }
     block_destroy();
   }
@@ -219,7 +217,7 @@ TEST(test_spring)
     struct dea_spring *spring;
     double unit = k == 0 ? 1 : 0.5, sum = 0, before = 0;
     static struct dea_load_piece piece, start;
-    assert_int_equal(dea_spring_create(ctx, &options[k], &spring), DEA_OK);
+    assert_int_equal(dea_spring_create(ctx, &options[k], &memory, &spring), DEA_OK);
     const struct dea_solid_load load = dea_spring_load(spring);
     for (double y = -1.7; y < 3.9; y += 0.23) {
       u[3 * 3 + 1] = unit * (y + 0.05);
@@ -247,18 +245,17 @@ TEST(test_spring)
     dea_spring_move(spring, 2);
     set_parameters(&load);
     assert_close(dea_spring_force(spring, 2 + at[1]), k == 0 ? force[1] : 7 * at[1], 1e-12, 0);
-    dea_spring_destroy(ctx, spring);
   }
   struct dea_spring *spring;
   struct dea_spring_options wrong = options[0];
   wrong.at = force;
-  assert_int_equal(dea_spring_create(ctx, &wrong, &spring), DEA_E_ARGUMENT);
+  assert_int_equal(dea_spring_create(ctx, &wrong, &memory, &spring), DEA_E_ARGUMENT);
   wrong = options[1];
   wrong.component = 3;
-  assert_int_equal(dea_spring_create(ctx, &wrong, &spring), DEA_E_ARGUMENT);
+  assert_int_equal(dea_spring_create(ctx, &wrong, &memory, &spring), DEA_E_ARGUMENT);
   wrong = options[1];
   wrong.stiffness = -1;
-  assert_int_equal(dea_spring_create(ctx, &wrong, &spring), DEA_E_ARGUMENT);
+  assert_int_equal(dea_spring_create(ctx, &wrong, &memory, &spring), DEA_E_ARGUMENT);
   block_destroy();
 }
 
@@ -330,15 +327,13 @@ TEST(test_derivatives_of_contact)
         .place_m = {1.4, 1, 1.7 + (tips[i].shape == DEA_INDENTER_FLAT ? 0 : tips[i].radius_m)},
         .stiffness_Pa_per_m = 40};
     struct dea_contact *contact;
-    assert_int_equal(dea_contact_create(ctx, surface, &options, &contact), DEA_OK);
+    assert_int_equal(dea_contact_create(ctx, surface, &options, &memory, &contact), DEA_OK);
     struct dea_solid_load load = dea_contact_load(contact);
     check_derivatives(&load);
     assert_true(load.update(load.self, u) > 1);
     check_derivatives(&load);
     check_prediction(&load);
-    dea_contact_destroy(ctx, contact);
   }
-  dea_surface_destroy(ctx, surface);
   block_destroy();
 }
 
@@ -375,20 +370,17 @@ TEST(test_derivatives_of_two_surfaces)
       u[3 * n + 1] = 0.1 * (0.5 * X[0] * X[2] - 0.2 * X[1]) - 0.2 * up;
       u[3 * n + 2] = 0.2 * (cos(X[0]) + 0.4 * X[1] * X[2]) - up * (0.1 + 0.1 * sin(3 * X[0]));
     }
-    assert_ok(dea_surface_create(ctx, grid, DEA_FACE_TOP, is_lower, NULL, &lower));
-    assert_ok(dea_surface_create(ctx, grid, DEA_FACE_BOTTOM, is_upper, NULL, &upper));
+    assert_ok(dea_surface_create(ctx, grid, DEA_FACE_TOP, is_lower, NULL, &memory, &lower));
+    assert_ok(dea_surface_create(ctx, grid, DEA_FACE_BOTTOM, is_upper, NULL, &memory, &upper));
     const struct dea_contact_options options = {
         .tip = {.radius_m = 1}, .other = lower, .stiffness_Pa_per_m = 40};
-    assert_ok(dea_contact_create(ctx, upper, &options, &contact));
+    assert_ok(dea_contact_create(ctx, upper, &options, &memory, &contact));
     struct dea_solid_load load = dea_contact_load(contact);
     check_derivatives(&load);
     assert_true(load.update(load.self, u) > 1);
     check_derivatives(&load);
     check_prediction(&load);
     assert_close(dea_contact_slide(contact, u), 0.2, 0, 0.1);
-    dea_contact_destroy(ctx, contact);
-    dea_surface_destroy(ctx, lower);
-    dea_surface_destroy(ctx, upper);
     block_destroy();
   }
 }
@@ -402,7 +394,7 @@ TEST(test_force_by_place_of_tip)
   const struct dea_contact_options options = {
       .tip = tips[1], .place_m = {1.4, 1, 1.7}, .stiffness_Pa_per_m = 40};
   struct dea_contact *contact;
-  assert_int_equal(dea_contact_create(ctx, surface, &options, &contact), DEA_OK);
+  assert_int_equal(dea_contact_create(ctx, surface, &options, &memory, &contact), DEA_OK);
   struct dea_solid_load load = dea_contact_load(contact);
   for (int i = 0; i < 3; i++) {
     double energy[2] = {0, 0}, d = 1e-6, force[3];
@@ -422,8 +414,6 @@ TEST(test_force_by_place_of_tip)
     assert_close(force[i], -(energy[1] - energy[0]) / (2 * d), 1e-7, 1e-9);
     assert_true(fabs(force[i]) > 1e-3);
   }
-  dea_contact_destroy(ctx, contact);
-  dea_surface_destroy(ctx, surface);
   block_destroy();
 }
 

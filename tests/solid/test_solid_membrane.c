@@ -188,10 +188,11 @@ TEST(test_faces)
   const double b = 15e-3, area = 0.25 * acos(-1) * b * b;
   const struct dea_quarter quarter = {2, 1, 3.75e-3, b, 1e-4, .fine = 3, .membrane = true};
   struct dea_grid *grid;
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_surface *surface;
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   for (int side = DEA_FACE_BOTTOM; side <= DEA_FACE_TOP; side++) {
-    assert_ok(dea_surface_create(ctx, grid, (enum dea_face)side, NULL, NULL, &surface));
+    assert_ok(dea_surface_create(ctx, grid, (enum dea_face)side, NULL, NULL, &memory, &surface));
     struct dea_face_shape face;
     double X[3 * DEA_FACE_NODES_MAX], normal[3];
     assert_close(dea_surface_area(surface), area, 2e-4, 0);
@@ -199,10 +200,10 @@ TEST(test_faces)
     dea_face_gather(surface, 0, grid->X, X);
     dea_face_normal(&face, 0, X, normal);
     assert_true(side == DEA_FACE_TOP ? normal[2] > 0 : normal[2] < 0);
-    dea_surface_destroy(ctx, surface);
   }
-  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_FIRST_LOW, NULL, NULL, &surface),
+  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_FIRST_LOW, NULL, NULL, &memory, &surface),
                    DEA_E_ARGUMENT);
+  dea_arena_free(&memory);
   dea_grid_destroy(ctx, grid);
 }
 

@@ -322,6 +322,7 @@ TEST(test_springs_and_point_masses)
   const struct dea_part_material layer = dea_part_material_bonded(elastic);
   struct dea_grid *grid = block_grid(ctx, &bar);
   struct dea_solid_body body = {.length_m = 2};
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_spring *springs[6];
   struct dea_solid *solid;
   struct dea_solid_report report;
@@ -347,7 +348,7 @@ TEST(test_springs_and_point_masses)
                                            .component = i % 3,
                                            .unit_m = i < 3 ? 1 : body.length_m,
                                            .stiffness = k[i]};
-    assert_int_equal(dea_spring_create(ctx, &one, &springs[i]), DEA_OK);
+    assert_int_equal(dea_spring_create(ctx, &one, &memory, &springs[i]), DEA_OK);
     const struct dea_solid_load load = dea_spring_load(springs[i]);
     assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
   }
@@ -375,9 +376,7 @@ TEST(test_springs_and_point_masses)
   assert_close(t[0], 0.25, 1e-9, 0);
   assert_close(w[2], 0, 0, 1e-9);
   dea_solid_destroy(ctx, solid);
-  for (int i = 0; i < 6; i++) {
-    dea_spring_destroy(ctx, springs[i]);
-  }
+  dea_arena_free(&memory);
   dea_free(ctx, follows);
   dea_free(ctx, masses);
   dea_grid_destroy(ctx, grid);
@@ -435,9 +434,10 @@ static double tumble(int steps, double radius, double *energy_error)
   struct bodies it = bodies_create(&bar, &layer, 1, 1, middle, 0, whole_block, free_nodes, NULL);
   const struct dea_spring_options none = {.node = it.body[0].node};
   const struct dea_solid_time_options options = {.inertia = true, .spectral_radius = radius};
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_spring *spring;
   struct dea_solid_time *time;
-  assert_int_equal(dea_spring_create(ctx, &none, &spring), DEA_OK);
+  assert_int_equal(dea_spring_create(ctx, &none, &memory, &spring), DEA_OK);
   const struct dea_solid_load load = dea_spring_load(spring);
   assert_int_equal(dea_solid_add_load(ctx, it.solid, &load), DEA_OK);
   assert_int_equal(dea_solid_time_create(ctx, it.solid, &options, &time), DEA_OK);
@@ -473,7 +473,7 @@ static double tumble(int steps, double radius, double *energy_error)
   *energy_error = dea_solid_time_energies(time, false).kinetic / first - 1;
   dea_solid_time_destroy(ctx, time);
   bodies_destroy(&it);
-  dea_spring_destroy(ctx, spring);
+  dea_arena_free(&memory);
   return most;
 }
 

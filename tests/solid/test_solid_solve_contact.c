@@ -92,15 +92,17 @@ TEST(test_hertz)
   const struct dea_part_material soft = dea_part_material_bonded((const double[]){E, nu});
   struct dea_grid *grid = hertz_grid();
   struct dea_solid *solid = block_solid(ctx, grid, 2, &soft, bonded);
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_surface *top;
   struct dea_contact *contact;
   struct dea_solid_report report;
-  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_TOP, upmost, NULL, &top), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_TOP, upmost, NULL, &memory, &top),
+                   DEA_OK);
   const struct dea_contact_options options = {
       .tip = {.shape = DEA_INDENTER_SPHERE, .radius_m = radius},
       .place_m = {0, 0, side + radius},
       .stiffness_Pa_per_m = 10 * E / 0.25};
-  assert_int_equal(dea_contact_create(ctx, top, &options, &contact), DEA_OK);
+  assert_int_equal(dea_contact_create(ctx, top, &options, &memory, &contact), DEA_OK);
   const struct dea_solid_load load = dea_contact_load(contact);
   assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
   dea_contact_move(contact, (const double[3]){0, 0, side + radius - d});
@@ -112,8 +114,7 @@ TEST(test_hertz)
   double middle = check_gaps(top, contact, &options.tip, dea_solid_displacement(solid), 1e-3 * d);
   assert_close(middle, 1.5 * 4 * force[2] / (pi * radius * d), 3e-2, 0);
   dea_solid_destroy(ctx, solid);
-  dea_contact_destroy(ctx, contact);
-  dea_surface_destroy(ctx, top);
+  dea_arena_free(&memory);
   dea_grid_destroy(ctx, grid);
 }
 
@@ -126,7 +127,7 @@ struct pressed {
   struct dea_part_material film;
   struct dea_grid *grid;
   struct dea_solid *solid;
-  struct dea_surface *top;
+  struct dea_arena memory; // of the contact
   struct dea_contact *contact;
 };
 
@@ -138,13 +139,16 @@ static void press_on_film(size_t fine, const struct dea_contact_options *options
                                    .param = {178.4e3, -6e3, 4.2e3},
                                    .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                    .kappa_Pa = 4e7,
-                                   .thickness_m = film_h}};
+                                   .thickness_m = film_h},
+                          .memory = {.ctx = ctx}};
+  struct dea_surface *top;
   assert_int_equal(dea_part_material_relax(&out->film), DEA_OK);
   const struct dea_quarter quarter = {2, 2, punch_m, frame_m, film_h, .fine = fine, .edge = 2e-4};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &out->grid), DEA_OK);
   out->solid = block_solid(ctx, out->grid, 2, &out->film, quarter_held);
-  assert_int_equal(dea_surface_create(ctx, out->grid, DEA_FACE_TOP, NULL, NULL, &out->top), DEA_OK);
-  assert_int_equal(dea_contact_create(ctx, out->top, options, &out->contact), DEA_OK);
+  assert_int_equal(dea_surface_create(ctx, out->grid, DEA_FACE_TOP, NULL, NULL, &out->memory, &top),
+                   DEA_OK);
+  assert_int_equal(dea_contact_create(ctx, top, options, &out->memory, &out->contact), DEA_OK);
   const struct dea_solid_load load = dea_contact_load(out->contact);
   assert_int_equal(dea_solid_add_load(ctx, out->solid, &load), DEA_OK);
 }
@@ -152,8 +156,7 @@ static void press_on_film(size_t fine, const struct dea_contact_options *options
 static void release(struct pressed *p)
 {
   dea_solid_destroy(ctx, p->solid);
-  dea_contact_destroy(ctx, p->contact);
-  dea_surface_destroy(ctx, p->top);
+  dea_arena_free(&p->memory);
   dea_grid_destroy(ctx, p->grid);
 }
 
@@ -242,6 +245,7 @@ static void press_blocks(const double mu[2], int steps, double slide)
   const struct dea_block quad = {block_map, &square, cuts, cuts, 2, 2, 0};
   const struct dea_ply plies[] = {{height, 1, 2}, {gap, 1, 2}, {height, 1, 2}};
   struct dea_grid *grid;
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_surface *below, *above;
   struct dea_contact *contact;
   struct dea_solid *solid;
@@ -254,11 +258,11 @@ static void press_blocks(const double mu[2], int steps, double slide)
     assert_ok(dea_part_material_relax(&materials[k]));
   }
   assert_ok(dea_grid_create(ctx, 2, &quad, 1, plies, 3, is_block, 0, 2, &grid));
-  assert_ok(dea_surface_create(ctx, grid, DEA_FACE_TOP, is_below, NULL, &below));
-  assert_ok(dea_surface_create(ctx, grid, DEA_FACE_BOTTOM, is_above, NULL, &above));
+  assert_ok(dea_surface_create(ctx, grid, DEA_FACE_TOP, is_below, NULL, &memory, &below));
+  assert_ok(dea_surface_create(ctx, grid, DEA_FACE_BOTTOM, is_above, NULL, &memory, &above));
   const struct dea_contact_options options = {
       .tip = {.radius_m = height}, .other = below, .stiffness_Pa_per_m = 30, .tolerance = 1e-6};
-  assert_ok(dea_contact_create(ctx, above, &options, &contact));
+  assert_ok(dea_contact_create(ctx, above, &options, &memory, &contact));
   const struct dea_solid_load load = dea_contact_load(contact);
   const struct dea_solid_options made = {.order_z = 2,
                                          .part_material_count = 2,
@@ -284,9 +288,7 @@ static void press_blocks(const double mu[2], int steps, double slide)
   }
   assert_close(dea_contact_slide(contact, dea_solid_displacement(solid)), slide, 0, 5e-3);
   dea_solid_destroy(ctx, solid);
-  dea_contact_destroy(ctx, contact);
-  dea_surface_destroy(ctx, below);
-  dea_surface_destroy(ctx, above);
+  dea_arena_free(&memory);
   dea_grid_destroy(ctx, grid);
 }
 

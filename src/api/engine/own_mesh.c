@@ -21,6 +21,7 @@ enum { FACES = 6 };
 /* A spring of a body, and which component it holds. */
 struct held_spring {
   struct dea_spring *spring;
+  struct dea_arena memory; // of it
   size_t body;
   int component; // 0 to 2: shift, 3 to 5: rotation vector
 };
@@ -383,7 +384,7 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_solid_continuation_destroy(ctx, object->path);
     dea_solid_destroy(ctx, object->solid);
     for (size_t i = 0; i < object->spring_count; i++) { // loads of the solid
-      dea_spring_destroy(ctx, object->springs[i].spring);
+      dea_arena_free(&object->springs[i].memory);
     }
     dea_free(ctx, object->springs);
     dea_free(ctx, object->spring_values);
@@ -561,11 +562,13 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_solid_object *o
                                              .count = spec->count,
                                              .at = spec->at,
                                              .force = spec->force};
-  struct held_spring one = {.body = spec->body, .component = component};
-  DEA_TRY(ctx, dea_spring_create(ctx, &options, &one.spring));
-  const struct dea_solid_load load = dea_spring_load(one.spring);
-  DEA_TRY_ELSE(ctx, dea_solid_add_load(ctx, object->solid, &load),
-               dea_spring_destroy(ctx, one.spring));
+  struct held_spring one = {.memory = {.ctx = ctx}, .body = spec->body, .component = component};
+  dea_status status = dea_spring_create(ctx, &options, &one.memory, &one.spring);
+  if (status == DEA_OK) {
+    const struct dea_solid_load load = dea_spring_load(one.spring);
+    status = dea_solid_add_load(ctx, object->solid, &load);
+  }
+  DEA_TRY_ELSE(ctx, status, dea_arena_free(&one.memory));
   dea_spring_move(one.spring, spec->place);
   springs[object->spring_count++] = one;
   return DEA_OK;
@@ -645,20 +648,22 @@ static dea_status pull(struct dea_context *ctx, struct dea_solid_object *object,
                        struct dea_solid_place place, const double traction_Pa[3])
 {
   const struct selection selection = {object, place};
+  struct dea_arena memory = {.ctx = ctx};
   size_t found = 0;
+  dea_status status = DEA_OK;
   end_path(ctx, object);
-  for (int side = 0; side < FACES; side++) {
+  for (int side = 0; side < FACES && status == DEA_OK; side++) {
     struct dea_surface *surface;
-    dea_status status = dea_surface_create(ctx, object->grid, (enum dea_face)side, is_selected,
-                                           &selection, &surface);
-    if (status == DEA_E_ARGUMENT) {
-      continue; // none of this side
+    status = dea_surface_create(ctx, object->grid, (enum dea_face)side, is_selected, &selection,
+                                &memory, &surface);
+    if (status == DEA_OK) {
+      dea_load_traction(surface, traction_Pa, dea_solid_force(object->solid));
+      found += surface->face_count;
     }
-    DEA_TRY(ctx, status);
-    dea_load_traction(surface, traction_Pa, dea_solid_force(object->solid));
-    found += surface->face_count;
-    dea_surface_destroy(ctx, surface);
+    status = status == DEA_E_ARGUMENT ? DEA_OK : status; // none of this side
   }
+  dea_arena_free(&memory);
+  DEA_TRY(ctx, status);
   if (found == 0) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "there is no face of an element in that box");
   }

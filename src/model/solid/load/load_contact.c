@@ -12,7 +12,6 @@ static const double tolerance_default = 1e-3;
 static const double gap_none = 1e-9; // of the length that gaps are compared with
 
 struct dea_contact {
-  struct dea_arena memory;                   // of all arrays
   const struct dea_surface *surface, *other; // other: NULL: the tip
   struct dea_face_shape shape;
   struct dea_indenter tip;
@@ -299,30 +298,18 @@ static dea_status find_opposite(struct dea_context *ctx, struct dea_contact *c)
   return DEA_OK;
 }
 
-static dea_status prepare(struct dea_context *ctx, struct dea_contact *c)
-{
-  dea_face_shape_create(c->surface->order, DEA_FACE_AT_NODES, &c->shape);
-  c->weight = dea_surface_weights(&c->memory, c->surface, &c->shape);
-  c->pressure = dea_arena_alloc(&c->memory, count_of(c), sizeof *c->pressure);
-  c->opposite = dea_arena_alloc(&c->memory, c->surface->face_count, sizeof *c->opposite);
-  c->start = dea_arena_alloc(&c->memory, count_of(c), sizeof *c->start);
-  DEA_TRY(ctx, dea_arena_status(&c->memory));
-  return c->other != NULL ? find_opposite(ctx, c) : DEA_OK;
-}
-
 dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface *surface,
-                              const struct dea_contact_options *options, struct dea_contact **out)
+                              const struct dea_contact_options *options, struct dea_arena *memory,
+                              struct dea_contact **out)
 {
   struct dea_indenter tip = options->tip;
-  *out = NULL;
   DEA_TRY(ctx, options->other == NULL ? dea_indenter_check(ctx, &tip) : DEA_OK);
   if (!(options->stiffness_Pa_per_m > 0) || !(options->tolerance >= 0)) {
     return dea_fail(ctx, DEA_E_ARGUMENT,
                     "contact needs a stiffness above 0 and a tolerance of 0 or more");
   }
-  struct dea_contact *c = dea_alloc(ctx, 1, sizeof *c);
-  DEA_TRY_MEMORY(c != NULL);
-  c->memory.ctx = ctx;
+  struct dea_contact *c = *out = dea_arena_alloc(memory, 1, sizeof *c);
+  DEA_TRY(ctx, dea_arena_status(memory));
   c->surface = surface;
   c->other = options->other;
   c->tip = tip;
@@ -330,18 +317,13 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
   c->tolerance = options->tolerance > 0 ? options->tolerance : tolerance_default;
   memcpy(c->now, options->place_m, sizeof c->now);
   memcpy(c->goal, options->place_m, sizeof c->goal);
-  const dea_status status = prepare(ctx, c);
-  DEA_TRY_ELSE(ctx, status, dea_contact_destroy(ctx, c));
-  *out = c;
-  return DEA_OK;
-}
-
-void dea_contact_destroy(struct dea_context *ctx, struct dea_contact *contact)
-{
-  if (contact != NULL) {
-    dea_arena_free(&contact->memory);
-    dea_free(ctx, contact);
-  }
+  dea_face_shape_create(surface->order, DEA_FACE_AT_NODES, &c->shape);
+  c->weight = dea_surface_weights(memory, surface, &c->shape);
+  c->pressure = dea_arena_alloc(memory, count_of(c), sizeof *c->pressure);
+  c->opposite = dea_arena_alloc(memory, surface->face_count, sizeof *c->opposite);
+  c->start = dea_arena_alloc(memory, count_of(c), sizeof *c->start);
+  DEA_TRY(ctx, dea_arena_status(memory));
+  return c->other != NULL ? DEA_CHAIN(ctx, find_opposite(ctx, c)) : DEA_OK;
 }
 
 void dea_contact_move(struct dea_contact *contact, const double place_m[3])

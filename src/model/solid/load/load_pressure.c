@@ -19,10 +19,11 @@ struct dea_pressure {
 };
 
 dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface *surface,
-                               const double origin_m[3], struct dea_pressure **out)
+                               const double origin_m[3], struct dea_arena *memory,
+                               struct dea_pressure **out)
 {
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
+  *out = dea_arena_alloc(memory, 1, sizeof **out);
+  DEA_TRY(ctx, dea_arena_status(memory));
   (*out)->surface = surface;
   memcpy((*out)->origin, origin_m, sizeof(*out)->origin);
   dea_face_shape_create(surface->order, DEA_FACE_GAUSS, &(*out)->shape);
@@ -30,16 +31,12 @@ dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface
 }
 
 dea_status dea_pressure_create_flat(struct dea_context *ctx, const struct dea_surface *surface,
-                                    double height_m, struct dea_pressure **out)
+                                    double height_m, struct dea_arena *memory,
+                                    struct dea_pressure **out)
 {
-  DEA_TRY(ctx, dea_pressure_create(ctx, surface, (double[3]){0, 0, height_m}, out));
+  DEA_TRY(ctx, dea_pressure_create(ctx, surface, (double[3]){0, 0, height_m}, memory, out));
   (*out)->flat = true;
   return DEA_OK;
-}
-
-void dea_pressure_destroy(struct dea_context *ctx, struct dea_pressure *pressure)
-{
-  dea_free(ctx, pressure);
 }
 
 void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa)

@@ -50,40 +50,29 @@ static dea_status check_options(struct dea_context *ctx, const struct dea_spring
 }
 
 dea_status dea_spring_create(struct dea_context *ctx, const struct dea_spring_options *options,
-                             struct dea_spring **out)
+                             struct dea_arena *memory, struct dea_spring **out)
 {
   const double line[2] = {0, 1}, pull[2] = {0, options->stiffness};
-  bool table = options->count > 0;
-  *out = NULL;
+  const bool table = options->count > 0;
+  const size_t count = table ? options->count : 2;
   DEA_TRY(ctx, check_options(ctx, options));
-  struct dea_spring *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_TRY_MEMORY(s != NULL);
+  struct dea_spring *s = dea_arena_alloc(memory, 1, sizeof *s);
+  double *at = dea_arena_alloc(memory, 4 * count, sizeof *at);
+  DEA_TRY(ctx, dea_arena_status(memory));
   s->node = options->node;
   s->component = (size_t)options->component;
   s->unit_m = options->unit_m > 0 ? options->unit_m : 1;
   s->now = s->goal = options->place;
-  s->count = table ? options->count : 2;
-  s->at = dea_alloc(ctx, 4 * s->count, sizeof *s->at);
-  if (s->at == NULL) {
-    dea_spring_destroy(ctx, s);
-    return DEA_E_MEMORY;
-  }
-  s->force = s->at + s->count;
-  s->slope = s->force + s->count;
-  s->energy = s->slope + s->count;
-  memcpy(s->at, table ? options->at : line, s->count * sizeof *s->at);
-  memcpy(s->force, table ? options->force : pull, s->count * sizeof *s->force);
+  s->count = count;
+  s->at = at;
+  s->force = at + count;
+  s->slope = s->force + count;
+  s->energy = s->slope + count;
+  memcpy(s->at, table ? options->at : line, count * sizeof *s->at);
+  memcpy(s->force, table ? options->force : pull, count * sizeof *s->force);
   fill_table(s);
   *out = s;
   return DEA_OK;
-}
-
-void dea_spring_destroy(struct dea_context *ctx, struct dea_spring *spring)
-{
-  if (spring != NULL) {
-    dea_free(ctx, spring->at);
-    dea_free(ctx, spring);
-  }
 }
 
 void dea_spring_move(struct dea_spring *spring, double place)

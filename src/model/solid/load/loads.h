@@ -1,6 +1,6 @@
 /* Loads on a solid (docs/theory/loads.md). Dead ones are added to nodal forces, as
- * dea_solid_force lends them; the others are objects whose dea_solid_load goes to
- * dea_solid_add_load and that outlive the solid. Surfaces are lent and outlive the objects. */
+ * dea_solid_force lends them; the others are objects in the memory given whose dea_solid_load goes
+ * to dea_solid_add_load and that outlive the solid. Surfaces are lent and outlive the objects. */
 #pragma once
 
 #include "model/solid/load/indenter.h"
@@ -30,10 +30,9 @@ struct dea_spring_options {
   const double *at;    // [count] rising
   const double *force; // [count]
 };
-/* out: owned by the caller. DEA_E_ARGUMENT for numbers that cannot be. */
+/* DEA_E_ARGUMENT for numbers that cannot be. */
 dea_status dea_spring_create(struct dea_context *ctx, const struct dea_spring_options *options,
-                             struct dea_spring **out);
-void dea_spring_destroy(struct dea_context *ctx, struct dea_spring *spring);
+                             struct dea_arena *memory, struct dea_spring **out);
 /* Where the next solve brings `place`. */
 void dea_spring_move(struct dea_spring *spring, double place);
 /* F at x, with the place as it is. */
@@ -44,15 +43,16 @@ struct dea_solid_load dea_spring_load(struct dea_spring *spring);
 
 struct dea_pressure;
 /* The boundary of the surface must be held, or stay in planes through origin_m: symmetry planes, or
- * one on which it slides. At first 0 Pa. out: owned by the caller. */
+ * one on which it slides. At first 0 Pa. */
 dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface *surface,
-                               const double origin_m[3], struct dea_pressure **out);
+                               const double origin_m[3], struct dea_arena *memory,
+                               struct dea_pressure **out);
 /* On a part of a flat face at z = height_m at rest, whose boundary is free to move: its forces
  * along z are exact, and those in the plane but for p times what the boundary has risen, per length
  * of it. */
 dea_status dea_pressure_create_flat(struct dea_context *ctx, const struct dea_surface *surface,
-                                    double height_m, struct dea_pressure **out);
-void dea_pressure_destroy(struct dea_context *ctx, struct dea_pressure *pressure);
+                                    double height_m, struct dea_arena *memory,
+                                    struct dea_pressure **out);
 /* The surface closes a volume V in, V0 while the surface is flat. Gas has there the pressure p0
  * over pa, which is outside, and elsewhere (p0 + pa) V0/V - pa; p0 is what dea_pressure_set sets. A
  * liquid has whatever pressure keeps V - V0 at what dea_pressure_set sets [m^3]; in the iterations
@@ -95,10 +95,10 @@ struct dea_contact_options {
   double stiffness_Pa_per_m;
   double tolerance; // of the pressure, relative, in the mean over the contact; 0: 1e-3
 };
-/* out: owned by the caller. DEA_E_ARGUMENT for a tip that cannot be. */
+/* DEA_E_ARGUMENT for a tip that cannot be. */
 dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface *surface,
-                              const struct dea_contact_options *options, struct dea_contact **out);
-void dea_contact_destroy(struct dea_context *ctx, struct dea_contact *contact);
+                              const struct dea_contact_options *options, struct dea_arena *memory,
+                              struct dea_contact **out);
 /* Where the next solve brings the tip. */
 void dea_contact_move(struct dea_contact *contact, const double place_m[3]);
 /* Of the surface on the tip, or on the other surface, at the last equilibrium, u: its

@@ -36,22 +36,18 @@ static void middle_of(const struct dea_surface *surface, size_t face, double mid
 dea_status
 dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum dea_face side,
                    bool (*select)(const void *self, int region, int ply, const double middle[3]),
-                   const void *self, struct dea_surface **out)
+                   const void *self, struct dea_arena *memory, struct dea_surface **out)
 {
+  const size_t count = grid->element_count;
   int local[DEA_FACE_NODES_MAX];
-  *out = NULL;
-  struct dea_surface *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_TRY_MEMORY(s != NULL);
-  s->grid = grid;
-  s->nodes = dea_alloc(ctx, grid->element_count, DEA_FACE_NODES_MAX * sizeof *s->nodes);
-  s->element = dea_alloc(ctx, grid->element_count, sizeof *s->element);
-  if (s->nodes == NULL || s->element == NULL) {
-    dea_surface_destroy(ctx, s);
-    return DEA_E_MEMORY;
-  }
+  struct dea_surface *s = dea_arena_alloc(memory, 1, sizeof *s);
+  int *nodes = dea_arena_alloc(memory, count, DEA_FACE_NODES_MAX * sizeof *nodes);
+  int *element = dea_arena_alloc(memory, count, sizeof *element);
+  DEA_TRY(ctx, dea_arena_status(memory));
+  *s = (struct dea_surface){.grid = grid, .nodes = nodes, .element = element};
   side_nodes(grid, side, s->order, local);
   s->face_nodes = (s->order[0] + 1) * (s->order[1] + 1);
-  for (size_t e = 0; e < grid->element_count; e++) {
+  for (size_t e = 0; e < count; e++) {
     double middle[3];
     bool surface = grid->levels[e] == 1; // its own bottom and top, without other faces
     if (surface && side != DEA_FACE_BOTTOM && side != DEA_FACE_TOP) {
@@ -69,21 +65,10 @@ dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum de
       s->element[s->face_count++] = (int)e;
     }
   }
-  if (s->face_count == 0) {
-    dea_surface_destroy(ctx, s);
-    return dea_fail(ctx, DEA_E_ARGUMENT, "no face of the mesh belongs to the surface of a load");
-  }
   *out = s;
-  return DEA_OK;
-}
-
-void dea_surface_destroy(struct dea_context *ctx, struct dea_surface *surface)
-{
-  if (surface != NULL) {
-    dea_free(ctx, surface->nodes);
-    dea_free(ctx, surface->element);
-    dea_free(ctx, surface);
-  }
+  return s->face_count > 0 ? DEA_OK
+                           : dea_fail(ctx, DEA_E_ARGUMENT,
+                                      "no face of the mesh belongs to the surface of a load");
 }
 
 void dea_face_gather(const struct dea_surface *surface, size_t face, const double *v, double *out)

@@ -27,13 +27,11 @@ struct dea_surface {
 
 /* The side of all elements that `select` wants, by their region and ply and the middle of the
  * face's nodes; NULL: of all. An element of a surface is its own bottom and top and has no other.
- * DEA_E_ARGUMENT when there is none. out: owned by the caller, NULL on failure; the grid outlives
- * it. */
+ * DEA_E_ARGUMENT when there is none. memory: of it; the grid outlives it. */
 dea_status
 dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum dea_face side,
                    bool (*select)(const void *self, int region, int ply, const double middle[3]),
-                   const void *self, struct dea_surface **out);
-void dea_surface_destroy(struct dea_context *ctx, struct dea_surface *surface);
+                   const void *self, struct dea_arena *memory, struct dea_surface **out);
 
 /* Values of a field v [node_count of the grid][3] at the nodes of a face, [face_nodes][3]. */
 void dea_face_gather(const struct dea_surface *surface, size_t face, const double *v, double *out);

@@ -87,17 +87,18 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_layout_mesh 
   indent->copies = (double)dea_layout_sector_copies(&mesh->sector);
   memcpy(options.place_m, indent->touch_m, sizeof indent->touch_m);
   options.place_m[2] -= sign * indent->depth_m;
+  struct dea_surface *surface;
   DEA_TRY(ctx, dea_surface_create(ctx, mesh->grid,
                                   probe->from_fibre_side ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
-                                  select_face, &choice, &indent->surface));
-  return DEA_CHAIN(ctx, dea_contact_create(ctx, indent->surface, &options, &indent->contact));
+                                  select_face, &choice, &indent->memory, &surface));
+  return DEA_CHAIN(ctx,
+                   dea_contact_create(ctx, surface, &options, &indent->memory, &indent->contact));
 }
 
 void dea_indent_destroy(struct dea_context *ctx, struct dea_indent *indent)
 {
   if (indent != NULL) {
-    dea_contact_destroy(ctx, indent->contact);
-    dea_surface_destroy(ctx, indent->surface);
+    dea_arena_free(&indent->memory);
     dea_free(ctx, indent);
   }
 }
@@ -118,6 +119,7 @@ dea_status dea_indent_create(struct dea_context *ctx, const struct dea_layout_me
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
   DEA_TRY_MEMORY(*out != NULL);
+  (*out)->memory.ctx = ctx;
   dea_status status = prepare(ctx, mesh, pressed, *out);
   if (status == DEA_OK && other == NULL) {
     const struct dea_solid_load load = dea_contact_load((*out)->contact);

@@ -7,8 +7,8 @@
 #include "model/solid/load/loads.h"
 
 struct dea_indent {
+  struct dea_arena memory; // of the contact
   struct dea_probe probe;
-  struct dea_surface *surface;
   struct dea_contact *contact;
   double touch_m[3]; // its place when it touches the flat film
   double depth_m;    // where it is

@@ -167,8 +167,9 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_model *model, s
       .at = spring->at,
       .force = force,
   };
-  DEA_TRY(ctx, dea_spring_create(ctx, &options, &model->springs[i]));
-  const struct dea_solid_load load = dea_spring_load(model->springs[i]);
+  struct dea_spring *made;
+  DEA_TRY(ctx, dea_spring_create(ctx, &options, &model->memory, &made));
+  const struct dea_solid_load load = dea_spring_load(made);
   return DEA_CHAIN(ctx, dea_solid_add_load(ctx, model->solid, &load));
 }
 
@@ -194,13 +195,13 @@ static bool is_loaded(const void *self, int region, int ply, const double middle
 }
 
 /* A face of a ply in a region. */
-static dea_status create_face(struct dea_context *ctx, const struct dea_model *model, size_t region,
+static dea_status create_face(struct dea_context *ctx, struct dea_model *model, size_t region,
                               size_t ply, bool top, struct dea_surface **out)
 {
   const struct face_of of = {model, region, ply, model->mesh.face_m[ply][top ? 1 : 0]};
   return DEA_CHAIN(ctx,
                    dea_surface_create(ctx, model->mesh.grid, top ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
-                                      is_loaded, &of, out));
+                                      is_loaded, &of, &model->memory, out));
 }
 
 /* What the sector has of an enclosed volume, below a face of that area. In the iterations a liquid
@@ -232,14 +233,15 @@ static void enclose(struct dea_model *model, size_t i, double area_m2)
 static dea_status add_pressure(struct dea_context *ctx, struct dea_model *model, size_t i)
 {
   const struct dea_layout_pressure *pressure = &model->layout->pressures[i];
-  struct dea_surface **surface = &model->surfaces[i];
+  struct dea_surface *surface;
   if (model->mesh.group[pressure->region] == DEA_LAYOUT_NONE) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, create_face(ctx, model, pressure->region, pressure->ply, pressure->top, surface));
-  double height_m = model->mesh.grid->X[3 * (*surface)->nodes[0] + 2];
-  DEA_TRY(ctx, dea_pressure_create_flat(ctx, *surface, height_m, &model->pressures[i]));
-  enclose(model, i, dea_surface_area(*surface));
+  DEA_TRY(ctx, create_face(ctx, model, pressure->region, pressure->ply, pressure->top, &surface));
+  double height_m = model->mesh.grid->X[3 * surface->nodes[0] + 2];
+  DEA_TRY(ctx,
+          dea_pressure_create_flat(ctx, surface, height_m, &model->memory, &model->pressures[i]));
+  enclose(model, i, dea_surface_area(surface));
   const struct dea_solid_load load = dea_pressure_load(model->pressures[i]);
   return DEA_CHAIN(ctx, dea_solid_add_load(ctx, model->solid, &load));
 }
@@ -444,23 +446,24 @@ static dea_status create_contact(struct dea_context *ctx, struct dea_model *mode
 {
   static const double stiffness_Pa_per_m = 1e10; // the answer does not depend on it (indent.c)
   const struct dea_layout_contact *c = &model->layout->contacts[i];
-  struct dea_surface **surface = model->touching[i];
+  struct dea_surface *surface, *other = NULL;
   const double side = c->top ? 1 : -1;
   if (model->mesh.group[c->region] == DEA_LAYOUT_NONE) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, create_face(ctx, model, c->region, c->ply, c->top, &surface[0]));
+  DEA_TRY(ctx, create_face(ctx, model, c->region, c->ply, c->top, &surface));
   if (c->with != DEA_LAYOUT_NONE) {
-    DEA_TRY(ctx, create_face(ctx, model, c->region, c->with, !c->top, &surface[1]));
+    DEA_TRY(ctx, create_face(ctx, model, c->region, c->with, !c->top, &other));
   }
   const struct dea_contact_options options = {
       .tip = {.shape = DEA_INDENTER_PLANE,
               .radius_m = model->layout->plies[c->ply].thickness_m,
               .axis = {0, 0, side}},
       .place_m = {0, 0, model->mesh.face_m[c->ply][c->top ? 1 : 0] + side * c->gap_m},
-      .other = surface[1],
+      .other = other,
       .stiffness_Pa_per_m = stiffness_Pa_per_m};
-  return DEA_CHAIN(ctx, dea_contact_create(ctx, surface[0], &options, &model->contacts[i]));
+  return DEA_CHAIN(ctx,
+                   dea_contact_create(ctx, surface, &options, &model->memory, &model->contacts[i]));
 }
 
 dea_status dea_solid_contacts_create(struct dea_context *ctx, struct dea_model *model,
@@ -468,7 +471,6 @@ dea_status dea_solid_contacts_create(struct dea_context *ctx, struct dea_model *
 {
   const size_t all = model->layout->contact_count;
   model->contacts = dea_arena_alloc(&model->memory, all, sizeof(struct dea_contact *));
-  model->touching = dea_arena_alloc(&model->memory, all, sizeof *model->touching);
   *loads = dea_arena_alloc(&model->memory, all, sizeof **loads);
   *count = 0;
   DEA_TRY(ctx, dea_arena_status(&model->memory));
@@ -504,9 +506,7 @@ dea_status dea_solid_contacts_check(struct dea_context *ctx, struct dea_model *m
 dea_status dea_solid_loads_add(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_layout *l = model->layout;
-  model->springs = dea_arena_alloc(&model->memory, l->spring_count, sizeof *model->springs);
   model->pressures = dea_arena_alloc(&model->memory, l->pressure_count, sizeof *model->pressures);
-  model->surfaces = dea_arena_alloc(&model->memory, l->pressure_count, sizeof *model->surfaces);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   for (size_t i = 0; i < l->spring_count; i++) {
     DEA_TRY(ctx, add_spring(ctx, model, i));

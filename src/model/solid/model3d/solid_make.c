@@ -239,27 +239,6 @@ dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_dev
   return DEA_CHAIN(ctx, report_sag(ctx, model));
 }
 
-/* Loads, mesh and arrays. */
-void dea_solid_model_free_parts(struct dea_context *ctx, struct dea_model *model)
-{
-  for (size_t i = 0; model->springs != NULL && i < model->layout->spring_count; i++) {
-    dea_spring_destroy(ctx, model->springs[i]);
-  }
-  for (size_t i = 0; model->pressures != NULL && i < model->layout->pressure_count; i++) {
-    dea_pressure_destroy(ctx, model->pressures[i]);
-  }
-  for (size_t i = 0; model->surfaces != NULL && i < model->layout->pressure_count; i++) {
-    dea_surface_destroy(ctx, model->surfaces[i]);
-  }
-  for (size_t i = 0; model->touching != NULL && i < model->layout->contact_count; i++) {
-    dea_contact_destroy(ctx, model->contacts[i]);
-    dea_surface_destroy(ctx, model->touching[i][0]);
-    dea_surface_destroy(ctx, model->touching[i][1]);
-  }
-  dea_layout_mesh_free(ctx, &model->mesh);
-  dea_arena_free(&model->memory);
-}
-
 void dea_solid_model_destroy(struct dea_context *ctx, struct dea_model *model)
 {
   if (model == NULL) {
@@ -274,6 +253,7 @@ void dea_solid_model_destroy(struct dea_context *ctx, struct dea_model *model)
   dea_solid_destroy(ctx, model->solid);
   dea_indent_destroy(ctx, model->indent);
   dea_free(ctx, model->profile);
-  dea_solid_model_free_parts(ctx, model);
+  dea_layout_mesh_free(ctx, &model->mesh);
+  dea_arena_free(&model->memory);
   dea_free(ctx, model);
 }

@@ -78,12 +78,8 @@ struct dea_model {
   double *profile;                 // what the last one lends from
   struct dea_solid_body *bodies;   // [body_count]
   double (*push)[6];               // [body_count] dead force and moment
-  struct dea_spring **springs;     // [spring_count]
   struct dea_pressure **pressures; // [pressure_count]
-  struct dea_surface **surfaces;   // [pressure_count]
   struct dea_contact **contacts;   // [contact_count], NULL where none of it is meshed
-  struct dea_surface *(
-      *touching)[2]; // [contact_count] its face, and the other one's; NULL: a plane
   struct dea_solid *solid;
   struct dea_observer *observer;
   int *follows;           // [nodes] body that a node moves with, counted from 1; 0: none
@@ -198,7 +194,6 @@ dea_status dea_solid_model_mesh(struct dea_context *ctx, struct dea_model *model
                                 const struct dea_layout_mesh *like);
 /* Part materials, loads, the solid and its observer on that mesh. */
 dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *model);
-void dea_solid_model_free_parts(struct dea_context *ctx, struct dea_model *model);
 dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_device *device,
                                    const struct dea_model_settings *settings,
                                    struct dea_model *model);

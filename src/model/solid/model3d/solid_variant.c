@@ -247,11 +247,8 @@ static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
   model->mesh = (struct dea_layout_mesh){.memory = {.ctx = ctx}};
   model->solid = NULL;
   model->observer = NULL;
-  model->springs = NULL;
   model->pressures = NULL;
-  model->surfaces = NULL;
   model->contacts = NULL;
-  model->touching = NULL;
   dea_status status = build_variant(ctx, model);
   v->solid = model->solid;
   model->solid = s;
@@ -297,7 +294,8 @@ void dea_variant_leave(struct dea_context *ctx, struct dea_model *model)
     dea_observer_destroy(ctx, model->observer);
     dea_solid_destroy(ctx, v->solid);
     v->solid = NULL;
-    dea_solid_model_free_parts(ctx, model);
+    dea_layout_mesh_free(ctx, &model->mesh);
+    dea_arena_free(&model->memory);
   }
   *model = v->own;
   s->problem = v->problem;
