@@ -33,31 +33,36 @@ static size_t line_rule(int order, enum dea_face_rule rule, double *x, double *w
   return count;
 }
 
+void dea_face_basis(const int order[2], const double at[2], double value[DEA_FACE_NODES_MAX],
+                    double slope[2][DEA_FACE_NODES_MAX])
+{
+  double nodes[DEA_HEX_LINE_MAX], v[2][DEA_HEX_LINE_MAX], d[2][DEA_HEX_LINE_MAX];
+  for (int a = 0; a < 2; a++) {
+    dea_lobatto_nodes((size_t)order[a], nodes);
+    dea_lagrange((size_t)order[a] + 1, nodes, at[a], v[a], d[a]);
+  }
+  for (int n = 0; n < (order[0] + 1) * (order[1] + 1); n++) {
+    const int i = n % (order[0] + 1), j = n / (order[0] + 1);
+    value[n] = v[0][i] * v[1][j];
+    slope[0][n] = d[0][i] * v[1][j];
+    slope[1][n] = v[0][i] * d[1][j];
+  }
+}
+
 void dea_face_shape_create(const int order[2], enum dea_face_rule rule, struct dea_face_shape *out)
 {
   double x[2][DEA_HEX_ORDER_MAX + 2], w[2][DEA_HEX_ORDER_MAX + 2];
-  double nodes[2][DEA_HEX_ORDER_MAX + 1];
-  double value[2][DEA_HEX_ORDER_MAX + 1], slope[2][DEA_HEX_ORDER_MAX + 1];
   size_t count[2];
   for (int a = 0; a < 2; a++) {
     count[a] = line_rule(order[a], rule, x[a], w[a]);
-    dea_lobatto_nodes((size_t)order[a], nodes[a]);
   }
   memcpy(out->order, order, sizeof out->order);
   out->nodes = (order[0] + 1) * (order[1] + 1);
   out->points = (int)(count[0] * count[1]);
   for (size_t p = 0; p < count[0] * count[1]; p++) {
-    const size_t at[2] = {p % count[0], p / count[0]};
-    for (int a = 0; a < 2; a++) {
-      dea_lagrange((size_t)order[a] + 1, nodes[a], x[a][at[a]], value[a], slope[a]);
-    }
-    for (int n = 0; n < out->nodes; n++) {
-      int i = n % (order[0] + 1), j = n / (order[0] + 1);
-      out->value[p][n] = value[0][i] * value[1][j];
-      out->slope[p][0][n] = slope[0][i] * value[1][j];
-      out->slope[p][1][n] = value[0][i] * slope[1][j];
-    }
-    out->weight[p] = w[0][at[0]] * w[1][at[1]];
+    const size_t i = p % count[0], j = p / count[0];
+    dea_face_basis(order, (const double[2]){x[0][i], x[1][j]}, out->value[p], out->slope[p]);
+    out->weight[p] = w[0][i] * w[1][j];
   }
 }
 

@@ -7,6 +7,10 @@
 
 enum { DEA_FACE_NODES_MAX = DEA_ELEMENT_LEVEL_MAX, DEA_FACE_POINTS_MAX = 25 };
 
+/* Nodal basis at local coordinates, and its slopes by them. order: as below. */
+void dea_face_basis(const int order[2], const double at[2], double value[DEA_FACE_NODES_MAX],
+                    double slope[2][DEA_FACE_NODES_MAX]);
+
 /* Basis at points of a rule. Nodes and points: first local axis fastest, as in a level of a
  * hexahedron. */
 struct dea_face_shape {

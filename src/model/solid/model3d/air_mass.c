@@ -1,13 +1,11 @@
 #include "model/solid/model3d/air_mass.h"
 
-#include "base/quadrature.h"
 #include "geometry/region.h"
+#include "model/solid/element/membrane.h"
 #include "model/solid/point/part_material.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { ROW = DEA_MESH_ORDER_MAX + 1 };
 
 static const double pi = 3.14159265358979323846;
 
@@ -47,32 +45,24 @@ static double own_potential(const double a[3], const double b[3], double area)
   return 4 / sqrt(area) - 2 * sum;
 }
 
-/* Value and slopes of a vector [points][3] at a place of an element. */
-static void interpolate(const double *values, const int *nodes, int row, double basis[4][ROW],
-                        double out[3][3])
+/* Value and slopes of a vector [points][3] at a place of an element, as the basis. */
+static void interpolate(const double *values, const int *nodes, int row,
+                        double basis[3][DEA_FACE_NODES_MAX], double out[3][3])
 {
   memset(out, 0, 9 * sizeof out[0][0]);
   for (int n = 0; n < row * row; n++) {
-    const double s = basis[0][n % row], t = basis[2][n / row], by_s = basis[1][n % row],
-                 by_t = basis[3][n / row];
-    for (int i = 0; i < 3; i++) {
-      const double v = values[3 * (size_t)nodes[n] + (size_t)i];
-      out[0][i] += s * t * v;
-      out[1][i] += by_s * t * v;
-      out[2][i] += s * by_t * v;
+    for (int i = 0; i < 9; i++) {
+      out[i / 3][i % 3] += basis[i / 3][n] * values[3 * nodes[n] + i % 3];
     }
   }
 }
 
 /* Place and slopes of the surface. */
 static void find_place(const struct work *w, const int *nodes, int row, const double at[2],
-                       double basis[4][ROW], double x[3][3])
+                       double basis[3][DEA_FACE_NODES_MAX], double x[3][3])
 {
-  double places[ROW], moved[3][3];
-  dea_lobatto_nodes((size_t)row - 1, places);
-  for (int k = 0; k < 2; k++) {
-    dea_lagrange((size_t)row, places, at[k], basis[2 * k], basis[2 * k + 1]);
-  }
+  double moved[3][3];
+  dea_face_basis((const int[2]){row - 1, row - 1}, at, basis[0], basis + 1);
   interpolate(w->surface->X, nodes, row, basis, x);
   interpolate(w->displacement, nodes, row, basis, moved);
   for (int i = 0; i < 9; i++) {
@@ -83,7 +73,7 @@ static void find_place(const struct work *w, const int *nodes, int row, const do
 static void add_cell(struct work *w, const int *nodes, int row, const double at[2],
                      const double size[2])
 {
-  double basis[4][ROW], x[3][3], v[3][3];
+  double basis[3][DEA_FACE_NODES_MAX], x[3][3], v[3][3];
   struct cell *cell = &w->cells[w->cell_count];
   find_place(w, nodes, row, at, basis, x);
   for (int i = 0; i < 3; i++) {
@@ -105,7 +95,7 @@ static void add_cell(struct work *w, const int *nodes, int row, const double at[
 static void divide(struct work *w, const int *nodes, int row, double length)
 {
   enum { SLIM = 6 };
-  double basis[4][ROW], x[3][3], side[2];
+  double basis[3][DEA_FACE_NODES_MAX], x[3][3], side[2];
   size_t n[2];
   find_place(w, nodes, row, (const double[2]){0, 0}, basis, x);
   for (int k = 0; k < 2; k++) {

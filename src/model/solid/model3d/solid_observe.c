@@ -4,6 +4,7 @@
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/problem.h"
+#include "model/solid/element/membrane.h"
 #include "model/solid/model3d/solid_fields.h"
 #include "result/columns.h"
 
@@ -45,40 +46,23 @@ struct dea_observer {
 
 // Where points are -------------------------------------------------------------------------------
 
-/* Nodal basis of a quadrilateral at local coordinates, and its slopes; [(order + 1)^2]. */
-static void basis(int order, const double at[2], double *value, double (*slope)[2])
-{
-  double places[DEA_HEX_LINE_MAX], v[2][DEA_HEX_LINE_MAX], d[2][DEA_HEX_LINE_MAX];
-  size_t line = (size_t)order + 1;
-  dea_lobatto_nodes((size_t)order, places);
-  for (int k = 0; k < 2; k++) {
-    dea_lagrange(line, places, at[k], v[k], d[k]);
-  }
-  for (size_t j = 0; j < line; j++) {
-    for (size_t i = 0; i < line; i++) {
-      value[j * line + i] = v[0][i] * v[1][j];
-      slope[j * line + i][0] = d[0][i] * v[1][j];
-      slope[j * line + i][1] = v[0][i] * d[1][j];
-    }
-  }
-}
-
 /* Local coordinates of a place in a quadrilateral of nodes [(order + 1)^2] by Newton's method,
  * which goes far outside on its way in a narrow one along an arc; false where it is not in it. */
 static bool locate(const struct dea_grid *grid, const int *nodes, const double x_m[2], double at[2])
 {
-  double value[PLANE_MAX], slope[PLANE_MAX][2];
+  const int order[2] = {grid->order, grid->order};
+  double value[PLANE_MAX], slope[2][PLANE_MAX];
   int count = (grid->order + 1) * (grid->order + 1);
   at[0] = at[1] = 0;
   for (int i = 0; i < 20; i++) {
     double r[2] = {x_m[0], x_m[1]}, J[4] = {0};
-    basis(grid->order, at, value, slope);
+    dea_face_basis(order, at, value, slope);
     for (int n = 0; n < count; n++) {
       const double *X = grid->X + 3 * nodes[n];
       for (int k = 0; k < 2; k++) {
         r[k] -= value[n] * X[k];
-        J[2 * k] += slope[n][0] * X[k];
-        J[2 * k + 1] += slope[n][1] * X[k];
+        J[2 * k] += slope[0][n] * X[k];
+        J[2 * k + 1] += slope[1][n] * X[k];
       }
     }
     double det = J[0] * J[3] - J[1] * J[2];
@@ -159,6 +143,7 @@ static bool find_in_sector(const struct dea_layout_mesh *mesh, const struct dea_
 {
   const struct dea_grid *grid = mesh->grid;
   const double *face_m = mesh->face_m[m->ply], middle_m = 0.5 * (face_m[0] + face_m[1]);
+  const int order[2] = {grid->order, grid->order};
   const double near_m = 1e-6 * mesh->layout->plies[m->ply].thickness_m;
   const double wanted_m[2] = {m->level == DEA_LEVEL_TOP      ? face_m[1]
                               : m->level == DEA_LEVEL_MIDDLE ? middle_m
@@ -169,7 +154,7 @@ static bool find_in_sector(const struct dea_layout_mesh *mesh, const struct dea_
   for (size_t e = 0; e < grid->element_count; e++) {
     const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX,
               per = (grid->order + 1) * (grid->order + 1);
-    double at[2], slope[PLANE_MAX][2];
+    double at[2], slope[2][PLANE_MAX];
     if ((size_t)grid->ply[e] != m->ply || !could_be_in(grid, nodes, x_m) ||
         !locate(grid, nodes, x_m, at)) {
       continue;
@@ -183,7 +168,7 @@ static bool find_in_sector(const struct dea_layout_mesh *mesh, const struct dea_
         out->element = e;
         memcpy(out->at, at, sizeof out->at);
         memcpy(out->node[k % 2], layer, (size_t)per * sizeof *layer);
-        basis(grid->order, at, out->weight, slope);
+        dea_face_basis(order, at, out->weight, slope);
       }
     }
   }
@@ -338,7 +323,7 @@ static double line_between(const struct dea_layout_mesh *mesh, const struct dea_
 struct middle {
   const int *face[2];
   int nodes; // of a face
-  double value[PLANE_MAX], slope[PLANE_MAX][2], F[3][2], dA;
+  double value[PLANE_MAX], slope[2][PLANE_MAX], F[3][2], dA;
 };
 
 /* Of an element whose faces are there. weight: of the point. */
@@ -346,10 +331,10 @@ static void find_middle(const struct dea_grid *grid, const double at[2], double 
                         const double *u, struct middle *out)
 {
   double X[2][2] = {{0}};
-  basis(grid->order, at, out->value, out->slope);
+  dea_face_basis((const int[2]){grid->order, grid->order}, at, out->value, out->slope);
   for (int n = 0; n < out->nodes; n++) {
     for (int i = 0; i < 4; i++) {
-      X[i / 2][i % 2] += out->slope[n][i % 2] * grid->X[3 * out->face[0][n] + i / 2];
+      X[i / 2][i % 2] += out->slope[i % 2][n] * grid->X[3 * out->face[0][n] + i / 2];
     }
   }
   const double det = X[0][0] * X[1][1] - X[0][1] * X[1][0];
@@ -357,11 +342,11 @@ static void find_middle(const struct dea_grid *grid, const double at[2], double 
   out->F[0][0] = out->F[1][1] = 1;
   out->dA = det * weight;
   for (int n = 0; n < out->nodes; n++) {
-    const double d[2] = {out->slope[n][0], out->slope[n][1]};
-    out->slope[n][0] = (d[0] * X[1][1] - d[1] * X[1][0]) / det;
-    out->slope[n][1] = (d[1] * X[0][0] - d[0] * X[0][1]) / det;
+    const double d[2] = {out->slope[0][n], out->slope[1][n]};
+    out->slope[0][n] = (d[0] * X[1][1] - d[1] * X[1][0]) / det;
+    out->slope[1][n] = (d[1] * X[0][0] - d[0] * X[0][1]) / det;
     for (int i = 0; i < 6; i++) {
-      out->F[i / 2][i % 2] += 0.5 * out->slope[n][i % 2] *
+      out->F[i / 2][i % 2] += 0.5 * out->slope[i % 2][n] *
                               (u[3 * out->face[0][n] + i / 2] + u[3 * out->face[1][n] + i / 2]);
     }
   }
@@ -386,7 +371,7 @@ static double area_stretch(const struct middle *at, double *weight)
   }
   const double J = sqrt(C[0] * C[1] - C[2] * C[2]);
   for (int n = 0; n < at->nodes && weight != NULL; n++) { // C^-1 slope times J
-    const double *d = at->slope[n];
+    const double d[2] = {at->slope[0][n], at->slope[1][n]};
     const double c[2] = {(C[1] * d[0] - C[2] * d[1]) / J, (C[0] * d[1] - C[2] * d[0]) / J};
     for (int i = 0; i < 3; i++) {
       add_to_faces(at, n, i, at->dA * (at->F[i][0] * c[0] + at->F[i][1] * c[1]), weight);
@@ -415,8 +400,9 @@ static double tangent_length(const struct dea_layout_mesh *mesh, bool along_y,
     const double length = length_of(along);
     mean += length / (double)copies;
     for (int i = 0; i < 3 * at->nodes && weight != NULL; i++) {
-      const double *slope = at->slope[i / 3];
-      const double by = at->dA * (slope[0] * a[0] + slope[1] * a[1]) / (length * (double)copies);
+      const int n = i / 3;
+      const double by =
+          at->dA * (at->slope[0][n] * a[0] + at->slope[1][n] * a[1]) / (length * (double)copies);
       add_to_faces(at, i / 3, i % 3, by * along[i % 3], weight);
     }
   }
