@@ -69,19 +69,13 @@ static dea_status correct(struct dea_path *path, const struct dea_path_state *or
   size_t n = path->system.unknowns;
   double scale = path->system.voltage_scale_V, right[ROWS_MAX], away[DEA_PATH_UNKNOWNS_MAX];
   for (*iterations = 1; *iterations <= NEWTON_MAX; ++*iterations) {
-    dea_status status = evaluate(path, at->u, at->voltage_V);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(evaluate(path, at->u, at->voltage_V));
     for (size_t i = 0; i < n; i++) {
       right[i] = -path->g[i];
       away[i] = at->u[i] - origin->u[i];
     }
     right[n] = ds - dot(path, a, away) - b * (at->voltage_V - origin->voltage_V) / scale;
-    status = solve_bordered(path, a, b, right);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(solve_bordered(path, a, b, right));
     for (size_t i = 0; i < n; i++) {
       at->u[i] += right[i];
     }
@@ -105,11 +99,8 @@ static dea_status finish(struct dea_path *path, const double *along_u, double al
   size_t n = path->system.unknowns;
   double scale = path->system.voltage_scale_V, right[ROWS_MAX] = {0};
   right[n] = 1;
-  dea_status status = evaluate(path, at->u, at->voltage_V);
-  status = status == DEA_OK ? solve_bordered(path, along_u, along_V / scale, right) : status;
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(evaluate(path, at->u, at->voltage_V));
+  DEA_TRY_STATUS(solve_bordered(path, along_u, along_V / scale, right));
   double length = sqrt(dot(path, right, right) + right[n] * right[n]);
   for (size_t i = 0; i < n; i++) {
     at->tangent_u[i] = right[i] / length;
@@ -128,9 +119,8 @@ static dea_status step(struct dea_path *path, const struct dea_path_state *from,
     to->u[i] += ds * from->tangent_u[i];
   }
   to->voltage_V += ds * from->tangent_V;
-  dea_status status =
-      correct(path, from, from->tangent_u, from->tangent_V / scale, ds, to, iterations);
-  return status == DEA_OK ? finish(path, from->tangent_u, from->tangent_V, to) : status;
+  DEA_TRY_STATUS(correct(path, from, from->tangent_u, from->tangent_V / scale, ds, to, iterations));
+  return finish(path, from->tangent_u, from->tangent_V, to);
 }
 
 /* Steps from *from with *ds made smaller until the step converges and turns gently; proposes the
@@ -201,11 +191,8 @@ static dea_status locate(struct dea_path *path, const struct dea_path_state *fro
   for (int i = 0; i < LOCATE_MAX; i++) {
     double s = i % 4 == 3 ? 0.5 * (s0 + s1) : s0 - f0 * (s1 - s0) / (f1 - f0);
     int iterations;
-    dea_status status = step(path, from, s, state, &iterations);
-    status = status == DEA_OK ? state_point(path, state, point) : status;
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(step(path, from, s, state, &iterations));
+    DEA_TRY_STATUS(state_point(path, state, point));
     *arc = s;
     double f = watch_value(what, watch, state, point);
     if (f == 0 || s1 - s0 < 1e-13 || fabs(f) < 1e-13 * fabs(at_1 - at_0)) {
@@ -263,12 +250,10 @@ static dea_status find_rest(struct dea_path *path)
   static const double nowhere[DEA_PATH_UNKNOWNS_MAX] = {0};
   struct dea_path_state origin = path->rest, at = path->rest;
   int iterations;
-  dea_status status = correct(path, &origin, nowhere, 1, 0, &at, &iterations);
-  status = status == DEA_OK ? finish(path, nowhere, path->system.voltage_scale_V, &at) : status;
-  if (status == DEA_OK) {
-    path->rest = at;
-  }
-  return status;
+  DEA_TRY_STATUS(correct(path, &origin, nowhere, 1, 0, &at, &iterations));
+  DEA_TRY_STATUS(finish(path, nowhere, path->system.voltage_scale_V, &at));
+  path->rest = at;
+  return DEA_OK;
 }
 
 /* The same as what is ramped grows from nothing to all of it, in shares that are halved where

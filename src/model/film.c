@@ -50,20 +50,18 @@ dea_status dea_film_report_weight(struct dea_context *ctx, const struct dea_devi
 dea_status dea_film_eval(const struct dea_film *film, bool active, double nominal_field_V_per_m,
                          double l1, double l2, struct dea_plane *out)
 {
-  dea_status status = dea_plane_elastic(film->material, l1, l2, out);
-  if (status != DEA_OK || !active) {
-    return status;
-  }
   struct dea_plane term;
+  DEA_TRY_STATUS(dea_plane_elastic(film->material, l1, l2, out));
+  if (!active) {
+    return DEA_OK;
+  }
   dea_plane_electric(film->material, nominal_field_V_per_m, l1, l2, &term);
   add(out, 1, &term);
   if (film->electrode != NULL) {
-    status = dea_plane_elastic(film->electrode, l1, l2, &term);
-    if (status == DEA_OK) {
-      add(out, film->electrode_ratio, &term);
-    }
+    DEA_TRY_STATUS(dea_plane_elastic(film->electrode, l1, l2, &term));
+    add(out, film->electrode_ratio, &term);
   }
-  return status;
+  return DEA_OK;
 }
 
 void dea_film_tension(const struct dea_film *film, const struct dea_plane *plane, double l1,

@@ -42,13 +42,11 @@ static dea_status sample(const struct dea_disc *disc, const double *u, double vo
   struct dea_plane plane;
   double field = voltage_V / disc->film.thickness_m;
   dea_disc_stretch(disc, u, e, R, &out->stretch_r, &out->stretch_t, &out->displacement_m);
-  dea_status status = dea_film_eval(&disc->film, disc->element[e].active, field, out->stretch_r,
-                                    out->stretch_t, &plane);
-  if (status == DEA_OK) {
-    dea_film_tension(&disc->film, &plane, out->stretch_r, out->stretch_t, &out->tension_r_N_per_m,
-                     &out->tension_t_N_per_m);
-  }
-  return status;
+  DEA_TRY_STATUS(dea_film_eval(&disc->film, disc->element[e].active, field, out->stretch_r,
+                               out->stretch_t, &plane));
+  dea_film_tension(&disc->film, &plane, out->stretch_r, out->stretch_t, &out->tension_r_N_per_m,
+                   &out->tension_t_N_per_m);
+  return DEA_OK;
 }
 
 /* Extremes over the nodes, which include the centre, both sides of the electrode edge and the
@@ -101,13 +99,8 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   double a = disc->electrode_radius_m, b = disc->frame_radius_m, energy;
   double edge_u_m = a * u[dea_disc_edge(disc)];
   *out = dea_load_point_empty();
-  dea_status status = find_extremes(disc, u, voltage_V, out);
-  if (status == DEA_OK) {
-    status = dea_disc_totals(disc, u, voltage_V, &energy, &out->capacitance_F);
-  }
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(find_extremes(disc, u, voltage_V, out));
+  DEA_TRY_STATUS(dea_disc_totals(disc, u, voltage_V, &energy, &out->capacitance_F));
   out->own_flags = (unsigned)(model->device.fibre_count > 0) << DEA_FLAG_PLAIN;
   out->voltage_V = voltage_V;
   out->electrode_stretch = 1 + edge_u_m / a;

@@ -23,14 +23,8 @@ dea_status dea_lumped_balance_eval(const struct dea_lumped *lumped, double elect
   if (!(l_a > 0 && l_p > 0)) {
     return DEA_E_DOMAIN;
   }
-  dea_status status =
-      dea_film_eval(&lumped->film, true, nominal_field_V_per_m, l_A, l_A, &out->active);
-  if (status == DEA_OK) {
-    status = dea_film_eval(&lumped->film, false, 0, l_P, l_P, &out->passive);
-  }
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_film_eval(&lumped->film, true, nominal_field_V_per_m, l_A, l_A, &out->active));
+  DEA_TRY_STATUS(dea_film_eval(&lumped->film, false, 0, l_P, l_P, &out->passive));
   double W[2], s[2], k[2]; // of the branches
   dea_equal_stress(&lumped->active_known, l_A, &W[0], &s[0], &k[0]);
   dea_equal_stress(&lumped->passive_known, l_P, &W[1], &s[1], &k[1]);

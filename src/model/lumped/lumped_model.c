@@ -30,14 +30,12 @@ static dea_status evaluate(void *self, const double *u, double voltage_V, double
   const struct dea_model *model = self;
   struct dea_lumped_balance balance;
   double H0 = model->lumped.film.thickness_m;
-  dea_status status = dea_lumped_balance_eval(&model->lumped, u[0], voltage_V / H0, &balance);
-  if (status == DEA_OK) {
-    double factor = 2 * model->lumped.pre_stretch / model->modulus_Pa;
-    g[0] = factor * balance.imbalance_Pa;
-    K[0] = factor * balance.slope_Pa;
-    gV[0] = factor * balance.slope_field_Pa_m_per_V / H0;
-  }
-  return status;
+  DEA_TRY_STATUS(dea_lumped_balance_eval(&model->lumped, u[0], voltage_V / H0, &balance));
+  double factor = 2 * model->lumped.pre_stretch / model->modulus_Pa;
+  g[0] = factor * balance.imbalance_Pa;
+  K[0] = factor * balance.slope_Pa;
+  gV[0] = factor * balance.slope_field_Pa_m_per_V / H0;
+  return DEA_OK;
 }
 
 static double smallest_tension(const struct dea_film *film, const struct dea_plane *plane, double l)

@@ -194,16 +194,10 @@ static dea_status step_once(const struct dea_lumped_motion *motion,
     e.known_Pa = alpha.m * mass_Pa_s2 * acceleration + alpha.f * from->imbalance_Pa;
   }
   struct evaluation at;
-  dea_status status;
+  const bool stays = inertia && !(h > 0); // the film; its charge may jump
   *to = *from;
-  if (inertia && !(h > 0)) { // the film stays, its charge may jump
-    status = evaluate(&lumped, motion, &from->circuit, step, l, &at);
-  } else {
-    status = find_root(&e, &l, &at);
-  }
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(stays ? evaluate(&lumped, motion, &from->circuit, step, l, &at)
+                       : find_root(&e, &l, &at));
   to->electrode_stretch = l;
   fill_moment(motion, from, step, &at, to);
   if (inertia && h > 0) {
@@ -282,12 +276,9 @@ dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea
   const struct dea_time_step second = {.length_s = 0.5 * h,
                                        .source_voltage_V = step->source_voltage_V,
                                        .disconnected = step->disconnected};
-  dea_status status = step_once(motion, now, step, &whole);
-  status = status == DEA_OK ? step_once(motion, now, &first, &half) : status;
-  status = status == DEA_OK ? step_once(motion, &half, &second, end) : status;
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(step_once(motion, now, step, &whole));
+  DEA_TRY_STATUS(step_once(motion, now, &first, &half));
+  DEA_TRY_STATUS(step_once(motion, &half, &second, end));
   end->time_s = now->time_s + h;
   double change = fmax(motion->largest_motion, fabs(end->electrode_stretch - 1));
   double voltage = fmax(motion->largest_voltage_V, fabs(end->circuit.voltage_V));

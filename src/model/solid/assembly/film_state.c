@@ -49,29 +49,28 @@ static dea_status ply_of(const struct dea_solid *s, size_t e, double voltage_V,
   const double share = height_of(s, e) / dea_solid_part_material(s, e)->thickness_m;
   struct dea_solid_element_input at;
   dea_solid_element_input(s, e, s->state.u, voltage_V, &at);
-  dea_status status = element->type->membrane_state(element, &at.in, out);
-  for (int p = 0; status == DEA_OK && p < out->count; p++) {
+  DEA_TRY_STATUS(element->type->membrane_state(element, &at.in, out));
+  for (int p = 0; p < out->count; p++) {
     out->tension[p] *= share;
     for (int i = 0; i < 3; i++) {
       out->force[p][i] *= share;
     }
   }
-  return status;
+  return DEA_OK;
 }
 
 /* The same with the forces of what counts, each on its own basis. */
 static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent extent,
                              double voltage_V, struct dea_membrane_state *out)
 {
-  dea_status status = ply_of(s, e, voltage_V, out);
-  for (size_t k = (size_t)s->problem.laminate[e]; k != e && status == DEA_OK;
-       k = (size_t)s->problem.laminate[k]) {
+  DEA_TRY_STATUS(ply_of(s, e, voltage_V, out));
+  for (size_t k = (size_t)s->problem.laminate[e]; k != e; k = (size_t)s->problem.laminate[k]) {
     struct dea_membrane_state other;
     if (!counts(s, e, k, extent)) {
       continue;
     }
-    status = ply_of(s, k, voltage_V, &other);
-    for (int p = 0; status == DEA_OK && p < out->count; p++) {
+    DEA_TRY_STATUS(ply_of(s, k, voltage_V, &other));
+    for (int p = 0; p < out->count; p++) {
       for (int i = 0; i < 3; i++) {
         out->force[p][i] += other.force[p][i];
       }
@@ -79,7 +78,7 @@ static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent ex
       out->tension[p] = 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
     }
   }
-  return status;
+  return DEA_OK;
 }
 
 /* D of docs/theory/trust.md, "Slack", of all plies that are bonded to an element. Surfaces of one
@@ -200,8 +199,8 @@ static dea_status field_of(const struct dea_solid *s, size_t e,
 {
   const double V = s->state.voltage_V;
   struct dea_membrane_state film;
-  dea_status status = ply_of(s, e, V, &film);
-  for (int p = 0; status == DEA_OK && p < film.count; p++) {
+  DEA_TRY_STATUS(ply_of(s, e, V, &film));
+  for (int p = 0; p < film.count; p++) {
     const double margin = quantity_of(s, e, V, &film, data, DEA_FILM_MARGIN, p, NULL);
     out->true_field_V_per_m =
         fmax(out->true_field_V_per_m, quantity_of(s, e, V, &film, data, DEA_FILM_FIELD, p, NULL));
@@ -210,7 +209,7 @@ static dea_status field_of(const struct dea_solid *s, size_t e,
     out->breakdown_probability = fmax(
         out->breakdown_probability, dea_breakdown_probability(&data->material->breakdown, margin));
   }
-  return status;
+  return DEA_OK;
 }
 
 /* At which points in the plane a film of a laminate is in compression. */
@@ -218,20 +217,19 @@ static dea_status find_compressed(const struct dea_solid *s,
                                   const struct dea_solid_film_data *films, size_t e,
                                   bool compressed[DEA_HEX_GAUSS_MAX])
 {
-  dea_status status = DEA_OK;
   size_t k = e;
   memset(compressed, 0, DEA_HEX_GAUSS_MAX * sizeof *compressed);
   do {
     struct dea_membrane_state film = {.count = 0};
     if (films[s->problem.part_material_of[k]].material != NULL) {
-      status = surface_of(s, k, OF_FILM, s->state.voltage_V, &film);
+      DEA_TRY_STATUS(surface_of(s, k, OF_FILM, s->state.voltage_V, &film));
     }
-    for (int p = 0; p < film.count && status == DEA_OK; p++) {
+    for (int p = 0; p < film.count; p++) {
       compressed[p] = compressed[p] || film.tension[p] < 0;
     }
     k = (size_t)s->problem.laminate[k];
-  } while (k != e && status == DEA_OK);
-  return status;
+  } while (k != e);
+  return DEA_OK;
 }
 
 /* Compression of the laminate whose lowest element this is, where a film of it is in compression,
@@ -244,15 +242,15 @@ static dea_status compression_of(const struct dea_solid *s, const struct dea_sol
   const double borne_Nm = 4 * pi * pi * bending_stiffness_Nm(s, e), height = height_of(s, e);
   struct dea_element_strains strains;
   bool compressed[DEA_HEX_GAUSS_MAX];
-  dea_status status = find_compressed(s, films, e, compressed);
-  status = status == DEA_OK ? dea_solid_element_strains(s, e, &strains) : status;
-  for (int q = 0; status == DEA_OK && q < dea_solid_element(s, e)->points; q++) {
+  DEA_TRY_STATUS(find_compressed(s, films, e, compressed));
+  DEA_TRY_STATUS(dea_solid_element_strains(s, e, &strains));
+  for (int q = 0; q < dea_solid_element(s, e)->points; q++) {
     const int p = q % laminate->count;
     *ratio += compressed[p] ? fmax(-laminate->tension[p], 0) * laminate->area[p] *
                                   strains.volume_m3[q] / (height * borne_Nm)
                             : 0;
   }
-  return status;
+  return DEA_OK;
 }
 
 static bool is_compressed(const struct dea_membrane_state *film)
@@ -272,17 +270,16 @@ static dea_status tension_of(const struct dea_solid *s, const struct dea_solid_f
   const bool tension = has_tension(s, &ring, e), laminate = ring.lowest && ring.film && ring.moves;
   const bool same = extent_of(s, e) == OF_LAMINATE || s->problem.laminate[e] == (int)e;
   struct dea_membrane_state film = {.count = 0};
-  dea_status status =
-      tension ? surface_of(s, e, extent_of(s, e), s->state.voltage_V, &film) : DEA_OK;
-  for (int p = 0; p < film.count && status == DEA_OK; p++) {
+  DEA_TRY_STATUS(tension ? surface_of(s, e, extent_of(s, e), s->state.voltage_V, &film) : DEA_OK);
+  for (int p = 0; p < film.count; p++) {
     out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, film.tension[p]);
   }
-  if (status == DEA_OK && laminate && !(tension && same)) {
-    status = surface_of(s, e, OF_LAMINATE, s->state.voltage_V, &film);
+  if (laminate && !(tension && same)) {
+    DEA_TRY_STATUS(surface_of(s, e, OF_LAMINATE, s->state.voltage_V, &film));
   }
-  return status == DEA_OK && laminate && is_compressed(&film)
+  return laminate && is_compressed(&film)
              ? compression_of(s, films, e, &film, &out->compression_ratio)
-             : status;
+             : DEA_OK;
 }
 
 /* The step is small since a film that wrinkles gives way to V (docs/theory/membrane.md); for slopes

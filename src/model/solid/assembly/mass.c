@@ -95,13 +95,12 @@ static dea_status metric_of(const struct dea_solid *s, size_t e, double *laplace
   double X[DEA_HEX_DOFS_MAX] = {0};
   const struct dea_element *element = dea_solid_element(s, e);
   int count = dea_solid_gather(s, e, s->problem.grid->X, X);
-  dea_status status =
-      element->type->metric(element, dea_solid_part_material(s, e), X, laplace, lumped);
   *volume = 0;
-  for (int n = 0; n < count && status == DEA_OK; n++) {
+  DEA_TRY_STATUS(element->type->metric(element, dea_solid_part_material(s, e), X, laplace, lumped));
+  for (int n = 0; n < count; n++) {
     *volume += lumped[n];
   }
-  return status;
+  return DEA_OK;
 }
 
 static dea_status laplace_of(const struct dea_solid *s, size_t e, double *laplace)

@@ -84,8 +84,8 @@ dea_status dea_hex_kinematics(const struct dea_hex_shape *s, const double *X, co
                               double (*gradient)[3][DEA_HEX_NODES_MAX],
                               struct dea_hex_point *points)
 {
-  dea_status status = dea_hex_find_points(s, X, u, points);
-  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
+  DEA_TRY_STATUS(dea_hex_find_points(s, X, u, points));
+  for (int q = 0; q < s->gauss; q++) {
     for (int J = 0; J < 3; J++) {
       const double *l = points[q].local + J;
       for (int n = 0; n < s->nodes; n++) {
@@ -94,7 +94,7 @@ dea_status dea_hex_kinematics(const struct dea_hex_shape *s, const double *X, co
       }
     }
   }
-  return status;
+  return DEA_OK;
 }
 
 /* M^-1 moment with M = L L^T. */
@@ -308,28 +308,26 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
   bool projected = dea_part_material_takes_pressure(part_material);
   double field = dea_part_material_field(part_material, in->voltage_V);
   const double *predicted = order >= DEA_TANGENT ? in->predicted : NULL;
-  dea_status status = dea_hex_find_points(shape, in->X, in->u, work.points);
-  if (status == DEA_OK && projected) {
-    status = dea_hex_project(shape, work.points, work.factor, work.moment, out->theta);
-  }
   out->energy_J = out->volume_m3 = 0;
-  if (!projected) {
-    memset(out->theta, 0, sizeof out->theta);
+  memset(out->theta, 0, sizeof out->theta);
+  DEA_TRY_STATUS(dea_hex_find_points(shape, in->X, in->u, work.points));
+  if (projected) {
+    DEA_TRY_STATUS(dea_hex_project(shape, work.points, work.factor, work.moment, out->theta));
   }
-  for (int m = 0; status == DEA_OK && m < shape->pressures && projected; m++) {
+  for (int m = 0; m < shape->pressures && projected; m++) {
     out->energy_J +=
         (in->multiplier[m] + 0.5 * part_material->kappa_Pa * out->theta[m]) * work.moment[m];
   }
   work.columns = order >= DEA_TANGENT && projected ? 3 + 3 * shape->pressures : 3;
-  for (int q = 0; status == DEA_OK && q < shape->gauss; q++) {
+  for (int q = 0; q < shape->gauss; q++) {
     double pressure =
         projected ? pressure_at(shape, part_material, q, in->multiplier, out->theta) : 0;
     out->volume_m3 += work.points[q].weight;
-    status = evaluate_point(shape, part_material, q, pressure, field, order, predicted, &work,
-                            &out->energy_J);
+    DEA_TRY_STATUS(evaluate_point(shape, part_material, q, pressure, field, order, predicted, &work,
+                                  &out->energy_J));
   }
-  if (status != DEA_OK || order < DEA_FORCE) {
-    return status;
+  if (order < DEA_FORCE) {
+    return DEA_OK;
   }
   dea_hex_sum_flux(shape, work.columns, work.flux, work.sums);
   for (int i = 0; i < 3 * shape->nodes; i++) {
@@ -406,16 +404,15 @@ dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea
   const struct dea_part_material *part_material = in->part_material;
   const bool projected = dea_part_material_takes_pressure(part_material);
   const double field = dea_part_material_field(part_material, in->voltage_V);
-  dea_status status = DEA_OK;
   *stiffness = *mass = 0;
-  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
+  for (int q = 0; q < s->gauss; q++) {
     const double weight = points[q].weight;
     double pressure = 0, change = 0, bending = 0, here[3];
     for (int m = 0; m < s->pressures && projected; m++) {
       pressure += s->pressure[q][m] * in->multiplier[m];
       change += s->pressure[q][m] * motion->pressure[m];
     }
-    status = bend_point(part_material, q, &points[q], pressure, field, H[q], &bending);
+    DEA_TRY_STATUS(bend_point(part_material, q, &points[q], pressure, field, H[q], &bending));
     bending += 2 * change * product(points[q].cof, H[q]);
     bending -= change != 0 ? change * change / part_material->kappa_Pa : 0;
     *stiffness += weight * bending;
@@ -423,7 +420,7 @@ dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea
     *mass += part_material->density_kg_per_m3 * weight *
              (here[0] * here[0] + here[1] * here[1] + here[2] * here[2]);
   }
-  return status;
+  return DEA_OK;
 }
 
 static dea_status motion_of(const struct dea_element *element, const struct dea_element_input *in,
@@ -432,9 +429,8 @@ static dea_status motion_of(const struct dea_element *element, const struct dea_
 {
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   double H[DEA_HEX_GAUSS_MAX][9];
-  dea_status status = dea_hex_find_motion(element->basis, in->X, in->u, motion->v, points, H);
-  return status == DEA_OK ? dea_hex_motion_at(element, in, motion, points, H, stiffness, mass)
-                          : status;
+  DEA_TRY_STATUS(dea_hex_find_motion(element->basis, in->X, in->u, motion->v, points, H));
+  return dea_hex_motion_at(element, in, motion, points, H, stiffness, mass);
 }
 
 /* ---- stresses at the end of a linear step ---- */
@@ -494,34 +490,34 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
   const double *multiplier = in->multiplier;
   double field = dea_part_material_field(part_material, in->voltage_V);
   bool projected = dea_part_material_takes_pressure(part_material);
-  dea_status status = dea_hex_kinematics(s, in->X, in->u, gradient, points);
-  if (status == DEA_OK && projected) {
-    status = dea_hex_project(s, points, factor, moment, theta);
+  DEA_TRY_STATUS(dea_hex_kinematics(s, in->X, in->u, gradient, points));
+  if (projected) {
+    DEA_TRY_STATUS(dea_hex_project(s, points, factor, moment, theta));
   }
-  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
+  for (int q = 0; q < s->gauss; q++) {
     step_gradient(s, gradient[q], step, H[q]);
     double squeeze = points[q].weight * product(points[q].cof, H[q]);
     for (int m = 0; m < s->pressures && projected; m++) {
       change[m] += s->pressure[q][m] * squeeze;
     }
   }
-  if (status == DEA_OK && projected) {
+  if (projected) {
     solve_moments(s, factor, change);
   }
   double kappa = projected ? part_material->kappa_Pa : 0;
   for (int m = 0; m < s->pressures; m++) {
     predicted[m] = projected ? multiplier[m] + kappa * (theta[m] + fraction * change[m]) : 0;
   }
-  for (int q = 0; q < s->gauss && status == DEA_OK && stresses; q++) {
+  for (int q = 0; q < s->gauss && stresses; q++) {
     double pressure = 0, pressure_change = 0;
     for (int m = 0; m < s->pressures && projected; m++) {
       pressure += s->pressure[q][m] * (multiplier[m] + kappa * theta[m]);
       pressure_change += s->pressure[q][m] * kappa * change[m];
     }
-    status = predict_point(part_material, q, &points[q], pressure, pressure_change, field, H[q],
-                           fraction, predicted + s->pressures + 6 * q);
+    DEA_TRY_STATUS(predict_point(part_material, q, &points[q], pressure, pressure_change, field,
+                                 H[q], fraction, predicted + s->pressures + 6 * q));
   }
-  return status;
+  return DEA_OK;
 }
 
 /* ---- mass and metric ---- */
@@ -589,18 +585,19 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
   struct dea_hex_point state[DEA_HEX_GAUSS_MAX];
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX];
-  dea_status status = dea_hex_find_points(shape, in->X, in->u, state);
-  status = status == DEA_OK ? dea_hex_project(shape, state, factor, moment, theta) : status;
+  DEA_TRY_STATUS(dea_hex_find_points(shape, in->X, in->u, state));
+  DEA_TRY_STATUS(dea_hex_project(shape, state, factor, moment, theta));
   out->count = (shape->order + 1) * (shape->order + 1);
-  for (int p = 0; p < out->count && status == DEA_OK; p++) {
+  for (int p = 0; p < out->count; p++) {
     double N[6] = {0}, F[9] = {0}, weights = 0;
-    for (int q = p; q < shape->gauss && status == DEA_OK; q += out->count) {
+    for (int q = p; q < shape->gauss; q += out->count) {
       struct dea_point point;
       const struct dea_hex_point *at = &state[q];
       double w = shape->weight[q];
       double pressure = pressure_at(shape, part_material, q, in->multiplier, theta);
-      status = point_of(part_material, q, at, pressure,
-                        dea_part_material_field(part_material, in->voltage_V), false, &point);
+      DEA_TRY_STATUS(point_of(part_material, q, at, pressure,
+                              dea_part_material_field(part_material, in->voltage_V), false,
+                              &point));
       for (int i = 0; i < 3; i++) {
         N[2 * i] += w * part_material->thickness_m * point.P[3 * i];
         N[2 * i + 1] += w * part_material->thickness_m * point.P[3 * i + 1];
@@ -624,20 +621,20 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
     dea_membrane_force(N, plane, out->area[p], T);
     out->tension[p] = 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
   }
-  return status;
+  return DEA_OK;
 }
 
 dea_status dea_hex_strains(const struct dea_element *element, const struct dea_element_input *in,
                            struct dea_element_strains *out)
 {
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  dea_status status = dea_hex_find_points(element->basis, in->X, in->u, points);
-  for (int q = 0; q < element->points && status == DEA_OK; q++) {
+  DEA_TRY_STATUS(dea_hex_find_points(element->basis, in->X, in->u, points));
+  for (int q = 0; q < element->points; q++) {
     const struct dea_hex_point *at = &points[q];
     dea_viscous_strain(at->F, at->cof, at->J, out->C[q], out->inverse[q]);
     out->volume_m3[q] = at->weight;
   }
-  return status;
+  return DEA_OK;
 }
 
 /* ---- recovery ---- */
@@ -715,22 +712,21 @@ static dea_status recover_point(const struct dea_part_material *part_material,
                                 double values[DEA_FIT_VALUES], double P[9])
 {
   struct dea_point point;
-  dea_status status =
-      dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, 0, false, &point);
+  DEA_TRY_STATUS(
+      dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, 0, false, &point));
   values[15] = point.W; // elastic alone: without the terms of pressure
   double slope, curvature;
   values[15] -= part_material->p0_Pa * (at->J - 1) +
                 dea_part_material_pointwise(part_material, at->J, &slope, &curvature);
   memcpy(P, point.P, sizeof point.P);
   values[16] = 0;
-  if (status == DEA_OK && (coupled != NULL || thin_V_per_m != 0)) {
-    status = total_stress(part_material, at, pressure, thin_V_per_m, coupled, P, &values[16]);
+  if (coupled != NULL || thin_V_per_m != 0) {
+    DEA_TRY_STATUS(
+        total_stress(part_material, at, pressure, thin_V_per_m, coupled, P, &values[16]));
   }
-  if (status == DEA_OK) {
-    memcpy(values, at->F, sizeof at->F);
-    true_stress(P, at->F, at->J, values + 9);
-  }
-  return status;
+  memcpy(values, at->F, sizeof at->F);
+  true_stress(P, at->F, at->J, values + 9);
+  return DEA_OK;
 }
 
 /* An element at its Gauss points. */
@@ -752,17 +748,17 @@ static dea_status find_state(const struct dea_element *element, const struct dea
   double theta[DEA_HEX_PRESSURES_MAX];
   out->coupled = element->type->per_node > 3;
   out->thin_V_per_m = out->coupled ? 0 : dea_part_material_field(part_material, in->voltage_V);
-  dea_status status = out->coupled ? dea_hex_kinematics(shape, in->X, in->u, gradient, out->at)
-                                   : dea_hex_find_points(shape, in->X, in->u, out->at);
-  status = status == DEA_OK ? dea_hex_project(shape, out->at, factor, moment, theta) : status;
-  for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
+  DEA_TRY_STATUS(out->coupled ? dea_hex_kinematics(shape, in->X, in->u, gradient, out->at)
+                              : dea_hex_find_points(shape, in->X, in->u, out->at));
+  DEA_TRY_STATUS(dea_hex_project(shape, out->at, factor, moment, theta));
+  for (int q = 0; q < shape->gauss; q++) {
     out->pressure[q] = pressure_at(shape, part_material, q, in->multiplier, theta);
     if (out->coupled) {
       dea_hex_field_at(shape, &out->at[q], gradient[q], in->potential, in->potential_V_per_m,
                        &out->field[q]);
     }
   }
-  return status;
+  return DEA_OK;
 }
 
 dea_status dea_hex_recover(const struct dea_element *element, const struct dea_element_input *in,
@@ -773,15 +769,14 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
   struct dea_gauss_fit fit;
   struct hex_points points;
   out->volume_m3 = out->volume_error = 0;
-  dea_status status = find_state(element, in, &points);
-  for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
-    status =
-        recover_point(in->part_material, &points.at[q], points.pressure[q], points.thin_V_per_m,
-                      points.coupled ? &points.field[q] : NULL, values[q], P[q]);
+  DEA_TRY_STATUS(find_state(element, in, &points));
+  for (int q = 0; q < shape->gauss; q++) {
+    DEA_TRY_STATUS(recover_point(in->part_material, &points.at[q], points.pressure[q],
+                                 points.thin_V_per_m, points.coupled ? &points.field[q] : NULL,
+                                 values[q], P[q]));
     out->volume_m3 += points.at[q].weight;
     out->volume_error = fmax(out->volume_error, fabs(points.at[q].J - 1));
   }
-  DEA_TRY_STATUS(status);
   dea_fit_create(shape->order, shape->order_z, false, &fit);
   dea_recovered_set(&fit, values, in->X[3 * (shape->nodes - 1) + 2] - in->X[2], P[0], 3, out);
   return DEA_OK;
@@ -791,8 +786,8 @@ dea_status dea_hex_state(const struct dea_element *element, const struct dea_ele
                          bool stress, struct dea_element_state *out)
 {
   struct hex_points points;
-  dea_status status = find_state(element, in, &points);
-  for (int q = 0; q < element->points && status == DEA_OK; q++) {
+  DEA_TRY_STATUS(find_state(element, in, &points));
+  for (int q = 0; q < element->points; q++) {
     const struct dea_hex_point *at = &points.at[q];
     double field;
     memcpy(out->F[q], at->F, sizeof at->F);
@@ -801,11 +796,11 @@ dea_status dea_hex_state(const struct dea_element *element, const struct dea_ele
     out->J[q] = at->J;
     out->pressure[q] = points.pressure[q];
     if (stress) {
-      status = total_stress(in->part_material, at, points.pressure[q], points.thin_V_per_m,
-                            points.coupled ? &points.field[q] : NULL, out->P[q], &field);
+      DEA_TRY_STATUS(total_stress(in->part_material, at, points.pressure[q], points.thin_V_per_m,
+                                  points.coupled ? &points.field[q] : NULL, out->P[q], &field));
     }
   }
-  return status;
+  return DEA_OK;
 }
 
 /* ---- the kind ---- */

@@ -190,18 +190,16 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   struct dea_element_input elastic = *in;
   elastic.voltage_V = 0;
-  dea_status status = dea_hex_find_motion(shape, in->X, in->u, motion->v, points, H);
-  status = status == DEA_OK
-               ? dea_hex_motion_at(element, &elastic, motion, points, H, stiffness, mass)
-               : status;
-  status = status == DEA_OK ? dea_hex_kinematics(shape, in->X, in->u, gradient, points) : status;
-  for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
+  DEA_TRY_STATUS(dea_hex_find_motion(shape, in->X, in->u, motion->v, points, H));
+  DEA_TRY_STATUS(dea_hex_motion_at(element, &elastic, motion, points, H, stiffness, mass));
+  DEA_TRY_STATUS(dea_hex_kinematics(shape, in->X, in->u, gradient, points));
+  for (int q = 0; q < shape->gauss; q++) {
     struct dea_hex_field field, change;
     dea_hex_field_at(shape, &points[q], gradient[q], motion->potential, c, &change);
     dea_hex_field_at(shape, &points[q], gradient[q], in->potential, c, &field);
     *stiffness -= eps * points[q].weight * bend_field(&points[q], &field, H[q], change.E);
   }
-  return status;
+  return DEA_OK;
 }
 
 static dea_status capacity(const struct dea_element *element, const struct dea_element_input *in,

@@ -153,11 +153,11 @@ static dea_status point_at(const struct dea_part_material *part_material, int q,
 {
   static const double little = 1e-6; // of the modulus
   const double *B = part_material->viscous != NULL ? part_material->viscous + 6 * q : NULL;
-  dea_status status = dea_membrane_point(part_material, B, F, field_V_per_m, out);
-  for (int a = 0; a < 6 && status == DEA_OK && out->state != DEA_TAUT; a++) {
+  DEA_TRY_STATUS(dea_membrane_point(part_material, B, F, field_V_per_m, out));
+  for (int a = 0; a < 6 && out->state != DEA_TAUT; a++) {
     out->A[7 * a] += little * dea_part_material_modulus(part_material);
   }
-  return status;
+  return DEA_OK;
 }
 
 static dea_status evaluate(const struct dea_element *element, const struct dea_element_input *in,
@@ -362,9 +362,9 @@ static dea_status recover_point(const struct dea_part_material *part_material, c
 {
   static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
   struct dea_membrane_point point;
-  dea_status status = dea_membrane_point(part_material, NULL, F, field_V_per_m, &point);
-  if (status != DEA_OK || !(complete(F, values) > 0)) {
-    return status != DEA_OK ? status : DEA_E_DOMAIN;
+  DEA_TRY_STATUS(dea_membrane_point(part_material, NULL, F, field_V_per_m, &point));
+  if (!(complete(F, values) > 0)) {
+    return DEA_E_DOMAIN;
   }
   memcpy(P, point.P, sizeof point.P);
   for (int m = 0; m < 6; m++) { // P F^T, J = 1
@@ -391,9 +391,8 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
   out->volume_m3 = out->volume_error = 0;
   for (int q = 0; q < shape->points; q++) {
     double area = columns_at(shape, q, in->X, in->u, F);
-    dea_status status =
-        area > 0 ? recover_point(part_material, F, field, values[q], P[q]) : DEA_E_DOMAIN;
-    DEA_TRY_STATUS(status);
+    DEA_TRY_STATUS(area > 0 ? recover_point(part_material, F, field, values[q], P[q])
+                            : DEA_E_DOMAIN);
     out->volume_m3 += part_material->thickness_m * area;
   }
   dea_fit_create(shape->order[0], 0, false, &fit);

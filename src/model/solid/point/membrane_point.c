@@ -19,14 +19,11 @@ dea_status dea_membrane_bond(const struct dea_part_material *film, struct dea_pa
   static const double poisson_ratio = 0.49;
   enum { XZ = 2, YZ = 5 }; // components of F
   struct dea_point point;
-  dea_status status = dea_membrane_check(film);
-  status =
-      status == DEA_OK ? dea_part_material_point(film, one, one, 1, 0, 0, true, &point) : status;
-  if (status == DEA_OK) {
-    double across = 0.5 * (point.A[9 * XZ + XZ] + point.A[9 * YZ + YZ]), mu = 1.5 * across;
-    *bond = dea_part_material_bonded((const double[]){2 * mu * (1 + poisson_ratio), poisson_ratio});
-  }
-  return status;
+  DEA_TRY_STATUS(dea_membrane_check(film));
+  DEA_TRY_STATUS(dea_part_material_point(film, one, one, 1, 0, 0, true, &point));
+  double across = 0.5 * (point.A[9 * XZ + XZ] + point.A[9 * YZ + YZ]), mu = 1.5 * across;
+  *bond = dea_part_material_bonded((const double[]){2 * mu * (1 + poisson_ratio), poisson_ratio});
+  return DEA_OK;
 }
 
 /* eps = permittivity + slope (sqrt(a) - 1) of the part material by s = sqrt(a G1 G2), as a material

@@ -139,13 +139,11 @@ static dea_status elastic(const struct dea_part_material *part_material, const d
   for (int i = 0; i < 3; i++) {
     times_g(part_material, 1, FG + 3 * i);
   }
-  dea_status status =
-      tangent ? dea_point_elastic(part_material->law, part_material->param, FG, fibre, out)
-              : dea_point_stress(part_material->law, part_material->param, FG, fibre, out);
-  if (status == DEA_OK) {
-    pull_back_point(part_material, tangent, out);
-  }
-  return status;
+  DEA_TRY_STATUS(tangent
+                     ? dea_point_elastic(part_material->law, part_material->param, FG, fibre, out)
+                     : dea_point_stress(part_material->law, part_material->param, FG, fibre, out));
+  pull_back_point(part_material, tangent, out);
+  return DEA_OK;
 }
 
 double dea_part_material_modulus(const struct dea_part_material *part_material)

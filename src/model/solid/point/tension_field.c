@@ -315,6 +315,6 @@ dea_status dea_tension_relaxed(const struct dea_tension *film, const double C[3]
   }
   begin_wrinkled(C, natural ? s.at.own : NULL, y);
   of.C = C;
-  dea_status status = minimise(&of, y, &s);
-  return status == DEA_OK ? set_wrinkled(&s, y[0], out) : status;
+  DEA_TRY_STATUS(minimise(&of, y, &s));
+  return set_wrinkled(&s, y[0], out);
 }

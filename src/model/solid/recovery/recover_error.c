@@ -339,11 +339,9 @@ static void estimate(struct work *w, const struct dea_recover_quantity *of, doub
 static dea_status gather(struct work *w, const struct dea_recover_quantity *of,
                          const double (*mirror)[3], struct dea_element_state *at)
 {
-  dea_status status = get_all(w, of, at);
-  if (status == DEA_OK) {
-    fit_all(w);
-  }
-  if (status == DEA_OK && w->in->grid->order == 2) {
+  DEA_TRY(w->ctx, get_all(w, of, at));
+  fit_all(w);
+  if (w->in->grid->order == 2) {
     const struct dea_recover_second second = {.grid = w->in->grid,
                                               .group = w->points.group,
                                               .mirror = mirror,
@@ -351,12 +349,10 @@ static dea_status gather(struct work *w, const struct dea_recover_quantity *of,
                                               .scalars = w->count,
                                               .nodes = w->nodes,
                                               .value = w->value};
-    status = dea_recover_second(w->ctx, &second, w->second);
+    DEA_TRY(w->ctx, dea_recover_second(w->ctx, &second, w->second));
   }
-  if (status == DEA_OK) {
-    get_means(w);
-  }
-  return status;
+  get_means(w);
+  return DEA_OK;
 }
 
 dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_input *in,
