@@ -198,8 +198,9 @@ TEST(test_response_about_own_voltages)
     }
   }
   solve_at(&strip, 0, V[0], V[1]);
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_solid_response *response;
-  assert_int_equal(dea_solid_response_create(ctx, strip.solid, 1, &response), DEA_OK);
+  assert_int_equal(dea_solid_response_create(ctx, strip.solid, 1, &memory, &response), DEA_OK);
   for (size_t n = 0; n < strip.grid->node_count; n++) {
     double real[3], imaginary[3];
     dea_solid_response_at(response, n, 0, &none, real, imaginary);
@@ -212,7 +213,7 @@ TEST(test_response_about_own_voltages)
   print_message("up to %.6g nm/V, off by %.2e of it\n", 1e9 * most, off / most);
   assert_true(most > 1e-10);
   assert_true(off < 1e-5 * most);
-  dea_solid_response_destroy(ctx, response);
+  dea_arena_free(&memory);
   free(slope);
   strip_destroy(&strip);
 }

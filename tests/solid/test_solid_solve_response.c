@@ -130,6 +130,7 @@ TEST(test_one_degree_of_freedom)
 {
   static const double ratio = 0.03;
   const struct dea_material film = test_material("gent", 43e3, 115, 0);
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_solid_response *response;
   double force, stiffness, square;
   strip_create(&film, V);
@@ -138,7 +139,7 @@ TEST(test_one_degree_of_freedom)
   assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 1, &square, NULL), DEA_OK);
   assert_close(square, stiffness / mass, 1e-4, 0);
   double push = strip_push(&film, V), omega_0 = sqrt(stiffness / mass);
-  assert_int_equal(dea_solid_response_create(ctx, solid, 2 * omega_0, &response), DEA_OK);
+  assert_int_equal(dea_solid_response_create(ctx, solid, 2 * omega_0, &memory, &response), DEA_OK);
   const struct dea_damping damping = {ratio, 0, 0};
   for (int i = 0; i <= 8; i++) {
     double w = 0.25 * i * omega_0, real[3], imaginary[3];
@@ -148,7 +149,7 @@ TEST(test_one_degree_of_freedom)
     assert_close(real[0], size * gap / hypot(gap, loss), 0, 1e-3 * size);
     assert_close(imaginary[0], -size * loss / hypot(gap, loss), 0, 1e-3 * size);
   }
-  dea_solid_response_destroy(ctx, response);
+  dea_arena_free(&memory);
   strip_destroy();
 }
 
@@ -237,6 +238,7 @@ TEST(test_modes_of_a_bender_against_the_system)
                                             .active = upper,
                                             .held = clamped};
   struct dea_solid_report report;
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_solid_response *response;
   double square[3];
   assert_int_equal(dea_grid_create(ctx, 2, &strip, 1, plies, 2, NULL, 0, 10e-3, &grid), DEA_OK);
@@ -244,13 +246,13 @@ TEST(test_modes_of_a_bender_against_the_system)
   assert_int_equal(dea_load_steps_solve(ctx, solid, V, &report), DEA_OK);
   assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, 3, square, NULL), DEA_OK);
   double first = sqrt(square[0]);
-  assert_int_equal(dea_solid_response_create(ctx, solid, 3 * first, &response), DEA_OK);
+  assert_int_equal(dea_solid_response_create(ctx, solid, 3 * first, &memory, &response), DEA_OK);
   const double at[] = {0, 0.7, 1, 3};
   for (int i = 0; i < 4; i++) {
     const struct dea_damping damping = {0, 0.1 * first, 0.2 / first};
     check_direct(response, at[i] * first, &damping);
   }
-  dea_solid_response_destroy(ctx, response);
+  dea_arena_free(&memory);
   strip_destroy();
 }
 

@@ -46,6 +46,7 @@ static void push(struct dea_solid *s, const struct dea_grid *grid, double share)
 static double bend(struct dea_solid *s, const struct dea_grid *grid)
 {
   static const bool wanted[] = {true};
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_adjoint *a;
   size_t middle = 0;
   const double at[] = {strip.size[0] / 2, strip.size[1] / 2, 0};
@@ -54,11 +55,11 @@ static double bend(struct dea_solid *s, const struct dea_grid *grid)
     const double off = hypot(hypot(x[0] - at[0], x[1] - at[1]), x[2] - at[2]);
     middle = off < hypot(hypot(best[0] - at[0], best[1] - at[1]), best[2] - at[2]) ? n : middle;
   }
-  assert_int_equal(dea_adjoint_create(ctx, s, 1, &a), DEA_OK);
+  assert_int_equal(dea_adjoint_create(ctx, s, 1, &memory, &a), DEA_OK);
   dea_adjoint_slope(a, 0)[3 * middle + 2] = 1;
   assert_int_equal(dea_adjoint_solve(ctx, a, wanted), DEA_OK);
   const double bent = dea_adjoint_answer(a, 0)[3 * middle + 2];
-  dea_adjoint_destroy(ctx, a);
+  dea_arena_free(&memory);
   return bent;
 }
 

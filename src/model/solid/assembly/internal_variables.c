@@ -30,7 +30,7 @@ static dea_status measure(const struct dea_solid *s, struct dea_internal_variabl
 
 /* Gives the elements of part materials with branches their points. */
 static dea_status place_points(struct dea_context *ctx, const struct dea_solid *s,
-                               struct dea_internal_variables *h)
+                               struct dea_arena *memory, struct dea_internal_variables *h)
 {
   const struct dea_solid_problem *p = &s->problem;
   const size_t elements = p->grid->element_count;
@@ -39,8 +39,8 @@ static dea_status place_points(struct dea_context *ctx, const struct dea_solid *
     h->first[e] = viscous ? h->count : ELASTIC;
     h->count += viscous ? (size_t)dea_solid_element(s, e)->points : 0;
   }
-  h->part_material = dea_arena_alloc(&h->memory, h->count + 1, sizeof *h->part_material);
-  DEA_TRY(ctx, dea_arena_status(&h->memory));
+  h->part_material = dea_arena_alloc(memory, h->count + 1, sizeof *h->part_material);
+  DEA_TRY(ctx, dea_arena_status(memory));
   for (size_t e = 0; e < elements; e++) {
     for (int q = 0; h->first[e] != ELASTIC && q < dea_solid_element(s, e)->points; q++) {
       h->part_material[h->first[e] + (size_t)q] = p->part_material_of[e];
@@ -50,20 +50,18 @@ static dea_status place_points(struct dea_context *ctx, const struct dea_solid *
 }
 
 static dea_status allocate_points(struct dea_context *ctx, const struct dea_solid *s,
-                                  const struct dea_branches *branches,
+                                  const struct dea_branches *branches, struct dea_arena *memory,
                                   struct dea_internal_variables *h)
 {
   const struct dea_solid_problem *p = &s->problem;
-  struct dea_arena *memory = &h->memory;
   double(**const tensors[])[6] = {&h->B, &h->C, &h->inverse, &h->inverse_next};
-  memory->ctx = ctx;
   h->branches = dea_arena_alloc(memory, p->part_material_count, sizeof *h->branches);
   h->steps = dea_arena_alloc(memory, p->part_material_count, sizeof *h->steps);
   h->b_Pa = dea_arena_alloc(memory, p->part_material_count, sizeof *h->b_Pa);
   h->first = dea_arena_alloc(memory, p->grid->element_count, sizeof *h->first);
   DEA_TRY(ctx, dea_arena_status(memory));
   memcpy(h->branches, branches, p->part_material_count * sizeof *branches);
-  DEA_TRY(ctx, place_points(ctx, s, h));
+  DEA_TRY(ctx, place_points(ctx, s, memory, h));
   for (size_t i = 0; i < sizeof tensors / sizeof *tensors; i++) {
     *tensors[i] = dea_arena_alloc(memory, h->count + 1, TENSOR_BYTES);
   }
@@ -74,10 +72,10 @@ static dea_status allocate_points(struct dea_context *ctx, const struct dea_soli
 
 /* Held as it is for long. */
 static dea_status begin_at_rest(struct dea_context *ctx, const struct dea_solid *s,
-                                const struct dea_branches *branches,
+                                const struct dea_branches *branches, struct dea_arena *memory,
                                 struct dea_internal_variables *h)
 {
-  DEA_TRY(ctx, allocate_points(ctx, s, branches, h));
+  DEA_TRY(ctx, allocate_points(ctx, s, branches, memory, h));
   DEA_TRY_STATUS(measure(s, h));
   for (size_t at = 0; at < h->count; at++) {
     memcpy(h->inverse[at], h->inverse_next[at], TENSOR_BYTES);
@@ -90,23 +88,13 @@ static dea_status begin_at_rest(struct dea_context *ctx, const struct dea_solid 
 
 dea_status dea_internal_variables_create(struct dea_context *ctx, const struct dea_solid *s,
                                          const struct dea_branches *branches,
+                                         struct dea_arena *memory,
                                          struct dea_internal_variables **out)
 {
-  struct dea_internal_variables *h = dea_alloc(ctx, 1, sizeof *h);
-  *out = NULL;
-  dea_status status = h != NULL ? begin_at_rest(ctx, s, branches, h) : DEA_E_MEMORY;
-  status = dea_solid_allreduce(ctx, status);
-  DEA_TRY_ELSE(ctx, status, dea_internal_variables_destroy(ctx, h));
-  *out = h;
-  return DEA_OK;
-}
-
-void dea_internal_variables_destroy(struct dea_context *ctx, struct dea_internal_variables *h)
-{
-  if (h != NULL) {
-    dea_arena_free(&h->memory);
-    dea_free(ctx, h);
-  }
+  *out = dea_arena_alloc(memory, 1, sizeof **out);
+  const dea_status status =
+      *out != NULL ? begin_at_rest(ctx, s, branches, memory, *out) : DEA_E_MEMORY;
+  return DEA_CHAIN(ctx, dea_solid_allreduce(ctx, status));
 }
 
 /* ---- steps ---- */

@@ -15,7 +15,6 @@ struct dea_branches {
 };
 
 struct dea_internal_variables {
-  struct dea_arena memory;                           // of all arrays
   struct dea_branches *branches;                     // [part_material_count]
   struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [part_material_count] of the step
   double *b_Pa;                                      // [part_material_count] of the step
@@ -29,13 +28,11 @@ struct dea_internal_variables {
   double (*C)[6], *volume_m3;       // [count] there
 };
 
-/* branches: [part_material_count of the solid]. The film was held as it is for long: A = C^-1. out:
- * owned by the caller, NULL on failure. */
+/* branches: [part_material_count of the solid]. The film was held as it is for long: A = C^-1. */
 dea_status dea_internal_variables_create(struct dea_context *ctx, const struct dea_solid *solid,
                                          const struct dea_branches *branches,
+                                         struct dea_arena *memory,
                                          struct dea_internal_variables **out);
-void dea_internal_variables_destroy(struct dea_context *ctx,
-                                    struct dea_internal_variables *variables);
 
 /* Sets B and b for a step from the last accepted state; step_s 0: the step that takes no time. */
 void dea_internal_variables_begin(struct dea_internal_variables *variables,

@@ -45,7 +45,6 @@ static double row_times(const struct row *row, const double *v)
 enum { OF_ELEMENTS, OF_LOADS, KINDS };
 
 struct dea_adjoint {
-  struct dea_arena memory; // of the arrays
   struct dea_solid *s;
   size_t dofs, pressures, count;      // of u, of multipliers of elements, of answers
   size_t all;                         // multipliers, those of loads behind the others
@@ -88,21 +87,20 @@ static void find_rows(struct dea_adjoint *a)
   }
 }
 
-static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
+static dea_status prepare(struct dea_context *ctx, struct dea_arena *memory, struct dea_adjoint *a)
 {
   struct dea_solid *s = a->s;
   struct dea_solid_report report = {0};
   a->dofs = s->problem.dofs;
   a->pressures = dea_solid_pressure_count(s);
   a->all = dea_solid_multiplier_count(s);
-  a->row = dea_arena_alloc(&a->memory, a->all - a->pressures, sizeof *a->row);
-  dea_solid_alloc_doubles(&a->memory, a->count * a->dofs,
-                          (double **[]){&a->right, &a->lambda, NULL});
-  dea_solid_alloc_doubles(&a->memory, a->count * a->all, (double **[]){&a->pull, &a->nu, NULL});
-  dea_solid_alloc_doubles(&a->memory, a->all,
+  a->row = dea_arena_alloc(memory, a->all - a->pressures, sizeof *a->row);
+  dea_solid_alloc_doubles(memory, a->count * a->dofs, (double **[]){&a->right, &a->lambda, NULL});
+  dea_solid_alloc_doubles(memory, a->count * a->all, (double **[]){&a->pull, &a->nu, NULL});
+  dea_solid_alloc_doubles(memory, a->all,
                           (double **[]){&a->left, &a->towards, &a->gain, &a->theta, NULL});
-  dea_solid_alloc_doubles(&a->memory, a->dofs, (double **[]){&a->conjugate, NULL});
-  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&a->memory)));
+  dea_solid_alloc_doubles(memory, a->dofs, (double **[]){&a->conjugate, NULL});
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
   find_rows(a);
   // of the state before the last step, which was a 1e-8 of the way, or of this one; other points
   // may have been in touch then
@@ -112,27 +110,16 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
     DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
   }
   a->stiff = s->found.factor_fits ? 1 : DEA_SOLID_STIFF;
-  return DEA_CHAIN(ctx, dea_constraints_find(ctx, &a->memory, s, &a->constraints));
+  return DEA_CHAIN(ctx, dea_constraints_find(ctx, memory, s, &a->constraints));
 }
 
 dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,
-                              struct dea_adjoint **out)
+                              struct dea_arena *memory, struct dea_adjoint **out)
 {
-  struct dea_adjoint *a = dea_solid_alloc(ctx, 1, sizeof *a);
-  *out = NULL;
-  DEA_TRY_MEMORY(a != NULL);
-  *a = (struct dea_adjoint){.memory = {.ctx = ctx}, .s = solid, .count = count};
-  DEA_TRY_ELSE(ctx, prepare(ctx, a), dea_adjoint_destroy(ctx, a));
-  *out = a;
-  return DEA_OK;
-}
-
-void dea_adjoint_destroy(struct dea_context *ctx, struct dea_adjoint *a)
-{
-  if (a != NULL) {
-    dea_arena_free(&a->memory);
-    dea_free(ctx, a);
-  }
+  *out = dea_arena_alloc(memory, 1, sizeof **out);
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
+  **out = (struct dea_adjoint){.s = solid, .count = count};
+  return DEA_CHAIN(ctx, prepare(ctx, memory, *out));
 }
 
 /* out [dofs] = b^T nu. */

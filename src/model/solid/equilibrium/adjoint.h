@@ -13,11 +13,9 @@ struct dea_adjoint;
 
 /* Room for `count` answers. The factor is that of the solid's last equilibrium where there is one
  * and no constraint of a load is held, else the tangent is factorised at its state. solid: lent,
- * outlives the answers, and where it is when they are solved. out: owned by the caller, NULL on
- * failure. */
+ * outlives the answers, and where it is when they are solved. memory: of the answers. */
 dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,
-                              struct dea_adjoint **out);
-void dea_adjoint_destroy(struct dea_context *ctx, struct dea_adjoint *adjoint);
+                              struct dea_arena *memory, struct dea_adjoint **out);
 
 /* Where slopes of a quantity go before dea_adjoint_solve, 0 at first: by u [dofs] and by the
  * multipliers [elements][pressures], then those of each load. */

@@ -16,6 +16,7 @@
 enum { COORDINATE, VOLTAGE, ANSWERS };
 
 struct work {
+  struct dea_arena memory;
   struct dea_model *model;
   struct dea_solid *solid;
   const double *slope; // [dofs] of the coordinate by the unknowns
@@ -113,32 +114,30 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea
   const double density = w->model->settings.reduced.air_kg_per_m3;
   const size_t dofs = w->solid->problem.dofs;
   double square[MODES], mass[MODES * MODES],
-      *vector = dea_solid_alloc(ctx, MODES * dofs, sizeof *vector);
+      *vector = dea_arena_alloc(&w->memory, MODES * dofs, sizeof *vector);
   struct modes modes;
   const bool fast = isfinite(out->fast_by_force);
   const double by_force = fast ? out->fast_by_force : out->by_force,
                by_voltage = fast ? out->fast_by_voltage : out->by_voltage;
-  dea_status status = vector == NULL ? DEA_E_MEMORY
-                                     : dea_solid_modes_whole(ctx, w->solid, DEA_MODES_BY_MASS,
-                                                             MODES, square, vector);
-  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&w->memory)));
+  DEA_TRY(ctx, dea_solid_modes_whole(ctx, w->solid, DEA_MODES_BY_MASS, MODES, square, vector));
+  for (size_t k = 0; k < MODES; k++) {
     const double *mode = vector + k * dofs, omega = sqrt(square[k]);
     modes.inverse[k] = 1 / square[k];
     modes.along[k] = dea_solid_dot(w->solid, mode, w->slope) / omega;
     modes.by_rate[k] = -dea_solid_dot(w->solid, mode, w->rate) / omega;
   }
-  if (status == DEA_OK && density > 0) {
-    status = find_air(ctx, w->model, vector, dofs, mass);
-    status = status == DEA_OK ? add_air(ctx, mass, density, &modes) : status;
+  if (density > 0) {
+    DEA_TRY(ctx, find_air(ctx, w->model, vector, dofs, mass));
+    DEA_TRY(ctx, add_air(ctx, mass, density, &modes));
   }
-  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
+  for (size_t k = 0; k < MODES; k++) {
     out->modes[k] =
         (struct dea_compliance_mode){1 / (2 * acos(-1.0) * sqrt(modes.inverse[k])),
                                      modes.along[k] * modes.along[k] / (w->copies * by_force),
                                      modes.along[k] * modes.by_rate[k] / by_voltage};
   }
-  dea_free(ctx, vector);
-  return DEA_CHAIN(ctx, status);
+  return DEA_OK;
 }
 
 /* du/dF = K^-1 q_u / copies, du/dV = -K^-1 R_V with the tangent as it is: of what moves at once, or
@@ -150,14 +149,13 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w, bool fast
   struct dea_adjoint *adjoint;
   const bool wanted[ANSWERS] = {true, !fast};
   double by_energy[2] = {0};
-  DEA_TRY(ctx, dea_adjoint_create(ctx, s, ANSWERS, &adjoint));
-  dea_status status = fast
-                          ? DEA_OK
-                          : dea_solid_model_rate(ctx, s, adjoint, w->voltage_V,
-                                                 fmax(fabs(w->voltage_V), 1e3), w->rate, by_energy);
+  DEA_TRY(ctx, dea_adjoint_create(ctx, s, ANSWERS, &w->memory, &adjoint));
+  DEA_TRY(ctx, fast ? DEA_OK
+                    : dea_solid_model_rate(ctx, s, adjoint, w->voltage_V,
+                                           fmax(fabs(w->voltage_V), 1e3), w->rate, by_energy));
   memcpy(dea_adjoint_slope(adjoint, COORDINATE), w->slope, s->problem.dofs * sizeof *w->slope);
   memcpy(dea_adjoint_slope(adjoint, VOLTAGE), w->rate, s->problem.dofs * sizeof *w->rate);
-  status = status == DEA_OK ? dea_adjoint_solve(ctx, adjoint, wanted) : status;
+  DEA_TRY(ctx, dea_adjoint_solve(ctx, adjoint, wanted));
   const double *by_force = dea_adjoint_answer(adjoint, COORDINATE),
                *by_rate = dea_adjoint_answer(adjoint, VOLTAGE);
   *(fast ? &out->fast_by_force : &out->by_force) = dea_solid_dot(s, by_force, w->slope) / w->copies;
@@ -167,8 +165,7 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w, bool fast
     out->charge_C = -w->copies * by_energy[0];
     out->charge_by_voltage = w->copies * (dea_solid_dot(s, by_rate, w->rate) - by_energy[1]);
   }
-  dea_adjoint_destroy(ctx, adjoint);
-  return DEA_CHAIN(ctx, status);
+  return DEA_OK;
 }
 
 /* Slopes of what moves at once and, where they are asked for, its modes: with the tangent of a step
@@ -178,7 +175,7 @@ static dea_status find_fast(struct dea_context *ctx, struct work *w, bool modes,
 {
   struct dea_solid *s = w->solid;
   struct dea_internal_variables *held;
-  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, w->model->plies.branches, &held));
+  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, w->model->plies.branches, &w->memory, &held));
   dea_internal_variables_begin(held, s, 0);
   s->state.internal_variables = held;
   dea_solid_forget(s);
@@ -186,7 +183,6 @@ static dea_status find_fast(struct dea_context *ctx, struct work *w, bool modes,
   status = status == DEA_OK && modes ? find_modes(ctx, w, out) : status;
   s->state.internal_variables = NULL;
   dea_solid_forget(s);
-  dea_internal_variables_destroy(ctx, held);
   return DEA_CHAIN(ctx, status);
 }
 
@@ -216,17 +212,19 @@ dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model 
   for (size_t k = 0; k < DEA_COMPLIANCE_MODES; k++) {
     out->modes[k] = (struct dea_compliance_mode){NAN, NAN, NAN};
   }
-  struct work w = {.model = model,
+  struct work w = {.memory = {.ctx = ctx},
+                   .model = model,
                    .solid = s,
                    .slope = model->pull.slope,
                    .voltage_V = model->at.voltage_V,
                    .copies = model->copies};
-  w.rate = dea_solid_alloc(ctx, s->problem.dofs, sizeof *w.rate);
-  dea_status status = w.rate == NULL ? DEA_E_MEMORY : find_compliance(ctx, &w, with, out);
+  w.rate = dea_arena_alloc(&w.memory, s->problem.dofs, sizeof *w.rate);
+  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&w.memory));
+  status = status == DEA_OK ? find_compliance(ctx, &w, with, out) : status;
   dea_solid_hold_potential(s, w.voltage_V, s->state.u);
   if (status == DEA_OK) { // reactions are those of the equilibrium again
     status = dea_solid_assemble(ctx, s, w.voltage_V, DEA_FORCE, &energy_J);
   }
-  dea_free(ctx, w.rate);
+  dea_arena_free(&w.memory);
   return DEA_CHAIN(ctx, status);
 }

@@ -487,41 +487,39 @@ static dea_status reserve(struct dea_context *ctx, struct work *w, struct dea_ar
 
 /* small_pivots: at a limit point there is one. */
 static dea_status create_adjoint(struct dea_context *ctx, struct work *w, size_t count,
-                                 bool small_pivots)
+                                 bool small_pivots, struct dea_arena *memory)
 {
   w->solid->work.takes_small_pivots = small_pivots;
-  const dea_status status = dea_adjoint_create(ctx, w->solid, count, &w->adjoint);
+  const dea_status status = dea_adjoint_create(ctx, w->solid, count, memory, &w->adjoint);
   w->solid->work.takes_small_pivots = false;
   return status;
 }
 
 /* At the equilibrium. */
 static dea_status find_here(struct dea_context *ctx, struct dea_model *model,
-                            const struct dea_gradient_request *ask, double *out)
+                            const struct dea_gradient_request *ask, struct dea_arena *memory,
+                            double *out)
 {
   struct dea_solid *s = model->solid;
-  struct dea_arena memory = {.ctx = ctx};
   struct work w = {.model = model, .solid = s, .voltage_V = model->at.voltage_V, .ask = ask};
   double energy_J;
-  w.known = dea_arena_alloc(&memory, dea_gradient_width(ask) + 1, sizeof *w.known);
-  w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
-  w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
-  w.force_direction = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
-  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&memory));
-  status = status == DEA_OK ? find_modes(ctx, &w, &memory) : status; // first: by another factor
+  w.known = dea_arena_alloc(memory, dea_gradient_width(ask) + 1, sizeof *w.known);
+  w.side = dea_arena_alloc(memory, 2 * dea_gradient_width(ask), sizeof *w.side);
+  w.motion = dea_arena_alloc(memory, ask->monitor_count + 1, sizeof *w.motion);
+  w.force_direction = dea_arena_alloc(memory, s->problem.dofs, sizeof(double));
+  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(memory));
+  status = status == DEA_OK ? find_modes(ctx, &w, memory) : status; // first: by another factor
   status = status == DEA_OK
-               ? create_adjoint(ctx, &w, dea_gradient_width(ask) + 1, ask->holds_stretch)
+               ? create_adjoint(ctx, &w, dea_gradient_width(ask) + 1, ask->holds_stretch, memory)
                : status;
-  status = status == DEA_OK ? reserve(ctx, &w, &memory) : status;
-  status = status == DEA_OK ? prepare_modes(ctx, &w, &memory) : status;
-  status = status == DEA_OK ? answer(ctx, &w, &memory) : status;
+  status = status == DEA_OK ? reserve(ctx, &w, memory) : status;
+  status = status == DEA_OK ? prepare_modes(ctx, &w, memory) : status;
+  status = status == DEA_OK ? answer(ctx, &w, memory) : status;
   status = status == DEA_OK ? find_by_changes(ctx, &w, out) : status;
   dea_solid_hold_potential(s, w.voltage_V, s->state.u);
   if (status == DEA_OK) { // scales and reactions are those of the equilibrium again
     status = dea_solid_assemble(ctx, s, w.voltage_V, DEA_FORCE, &energy_J);
   }
-  dea_adjoint_destroy(ctx, w.adjoint);
-  dea_arena_free(&memory);
   return DEA_CHAIN(ctx, status);
 }
 
@@ -582,7 +580,8 @@ static dea_status find_limit(struct dea_context *ctx, struct work *w, double *ou
 
 /* At the state that the ending has kept. */
 static dea_status find_there(struct dea_context *ctx, struct dea_model *model,
-                             const struct dea_gradient_request *ask, double *out)
+                             const struct dea_gradient_request *ask, struct dea_arena *memory,
+                             double *out)
 {
   struct dea_solid *s = model->solid;
   struct dea_solid_saved_state here;
@@ -595,11 +594,9 @@ static dea_status find_there(struct dea_context *ctx, struct dea_model *model,
   dea_solid_restore_state(s, &model->at.outcome.at_limit);
   struct work w = {
       .model = model, .solid = s, .voltage_V = dea_solid_voltage(s), .ask = ask, .side = side};
-  w.null_mode = dea_solid_alloc(ctx, 2 * s->problem.dofs, sizeof *w.null_mode);
-  dea_status status = w.null_mode != NULL ? create_adjoint(ctx, &w, OF_LIMIT, true) : DEA_E_MEMORY;
+  w.null_mode = dea_arena_alloc(memory, 2 * s->problem.dofs, sizeof *w.null_mode);
+  dea_status status = create_adjoint(ctx, &w, OF_LIMIT, true, memory);
   status = status == DEA_OK ? find_limit(ctx, &w, out) : status;
-  dea_adjoint_destroy(ctx, w.adjoint);
-  dea_free(ctx, w.null_mode);
   dea_solid_restore_state(s, &here);
   status = status == DEA_OK ? dea_solid_assemble(ctx, s, model->at.voltage_V, DEA_FORCE, &energy_J)
                             : status;
@@ -619,7 +616,8 @@ dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *m
   dea_solid_liquids_stiffen(model, true);
   dea_status status = dea_variant_begin(ctx, model, ask, &memory);
   if (status == DEA_OK) {
-    status = ask->of_limit ? find_there(ctx, model, ask, out) : find_here(ctx, model, ask, out);
+    status = ask->of_limit ? find_there(ctx, model, ask, &memory, out)
+                           : find_here(ctx, model, ask, &memory, out);
   }
   dea_solid_liquids_stiffen(model, false);
   model->variant = NULL;

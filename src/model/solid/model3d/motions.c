@@ -230,24 +230,24 @@ static dea_status superpose(struct dea_context *ctx, const struct dea_model *m,
                             const struct dea_damping *damping, const double *rad_per_s,
                             size_t count, struct answers *out)
 {
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_solid_response *response;
   size_t nodes = m->mesh.grid->node_count;
   double highest = 0;
   for (size_t i = 0; i < count; i++) {
     highest = fmax(highest, rad_per_s[i]);
   }
-  DEA_TRY(ctx, dea_solid_response_create(ctx, m->solid, highest, &response));
-  double *real = dea_solid_alloc(ctx, 6 * nodes, sizeof *real), *imaginary = real + 3 * nodes;
-  dea_status status = real == NULL ? DEA_E_MEMORY : DEA_OK;
+  double *real = dea_arena_alloc(&memory, 3 * nodes, sizeof *real),
+         *imaginary = dea_arena_alloc(&memory, 3 * nodes, sizeof *imaginary);
+  dea_status status = dea_solid_response_create(ctx, m->solid, highest, &memory, &response);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     for (size_t n = 0; n < nodes; n++) {
       dea_solid_response_at(response, n, rad_per_s[i], damping, real + 3 * n, imaginary + 3 * n);
     }
     status = add_frequency(ctx, out, i, real, imaginary);
   }
-  dea_free(ctx, real);
-  dea_solid_response_destroy(ctx, response);
-  return status;
+  dea_arena_free(&memory);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* At one frequency there are no modes: the ratio becomes shares of mass and stiffness that make it

@@ -174,7 +174,7 @@ dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *m
   DEA_TRY(ctx, dea_solid_create(ctx, model->mesh.grid, &options, &model->solid));
   DEA_TRY(ctx, dea_solid_loads_add(ctx, model));
   return DEA_CHAIN(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, model->contacts,
-                                            &model->observer));
+                                            &model->memory, &model->observer));
 }
 
 static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
@@ -244,7 +244,6 @@ void dea_solid_model_destroy(struct dea_context *ctx, struct dea_model *model)
   if (model == NULL) {
     return;
   }
-  dea_observer_destroy(ctx, model->observer);
   dea_circuit_step_destroy(ctx, model->at.driven);
   dea_step_outcome_free(&model->at.outcome);
   dea_free(ctx, model->at.soft);

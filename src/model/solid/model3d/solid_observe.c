@@ -30,7 +30,6 @@ struct of_disc {
 };
 
 struct dea_observer {
-  struct dea_arena memory;
   const struct dea_layout_mesh *mesh;
   struct dea_pressure *const *pressures;
   struct dea_contact *const *contacts;
@@ -204,7 +203,6 @@ static bool find_probe(const struct dea_layout_mesh *mesh, const struct dea_layo
 static dea_status find_places(struct dea_context *ctx, struct dea_observer *o)
 {
   const struct dea_layout *l = o->mesh->layout;
-  DEA_TRY(ctx, dea_arena_status(&o->memory));
   for (size_t i = 0; i < l->disc_monitor_count; i++) {
     struct of_disc *of = &o->of_disc[i];
     of->column = dea_observed_of_disc(&l->monitors[l->monitor_count + i], &of->motion);
@@ -232,33 +230,23 @@ static dea_status find_places(struct dea_context *ctx, struct dea_observer *o)
 
 dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                                struct dea_pressure *const *pressures,
-                               struct dea_contact *const *contacts, struct dea_observer **out)
+                               struct dea_contact *const *contacts, struct dea_arena *memory,
+                               struct dea_observer **out)
 {
   const struct dea_layout *l = mesh->layout;
-  struct dea_observer *o = dea_alloc(ctx, 1, sizeof *o);
-  *out = NULL;
-  DEA_TRY_MEMORY(o != NULL);
-  *o = (struct dea_observer){
-      .memory = {.ctx = ctx}, .mesh = mesh, .pressures = pressures, .contacts = contacts};
+  struct dea_observer *o = *out = dea_arena_alloc(memory, 1, sizeof *o);
+  DEA_TRY(ctx, dea_arena_status(memory));
+  *o = (struct dea_observer){.mesh = mesh, .pressures = pressures, .contacts = contacts};
   o->count = l->monitor_count + l->disc_monitor_count;
-  o->of_disc = dea_arena_alloc(&o->memory, l->disc_monitor_count, sizeof *o->of_disc);
-  o->probes = dea_arena_alloc(&o->memory, o->count + 1, sizeof *o->probes);
-  o->monitor = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->monitor);
-  o->body = dea_arena_alloc(&o->memory, l->body_count + 1, sizeof *o->body);
-  o->channel = dea_arena_alloc(&o->memory, l->channel_count, sizeof *o->channel);
+  o->of_disc = dea_arena_alloc(memory, l->disc_monitor_count, sizeof *o->of_disc);
+  o->probes = dea_arena_alloc(memory, o->count + 1, sizeof *o->probes);
+  o->monitor = dea_arena_alloc(memory, l->monitor_count + 1, sizeof *o->monitor);
+  o->body = dea_arena_alloc(memory, l->body_count + 1, sizeof *o->body);
+  o->channel = dea_arena_alloc(memory, l->channel_count, sizeof *o->channel);
   o->channel_count = l->channel_count > 1 ? l->channel_count : 2; // a solid has one beside ground
-  o->work = dea_arena_alloc(&o->memory, (o->channel_count + 2) * o->channel_count, sizeof(double));
-  DEA_TRY_ELSE(ctx, find_places(ctx, o), dea_observer_destroy(ctx, o));
-  *out = o;
-  return DEA_OK;
-}
-
-void dea_observer_destroy(struct dea_context *ctx, struct dea_observer *o)
-{
-  if (o != NULL) {
-    dea_arena_free(&o->memory);
-    dea_free(ctx, o);
-  }
+  o->work = dea_arena_alloc(memory, (o->channel_count + 2) * o->channel_count, sizeof(double));
+  DEA_TRY(ctx, dea_arena_status(memory));
+  return DEA_CHAIN(ctx, find_places(ctx, o));
 }
 
 // Values -----------------------------------------------------------------------------------------

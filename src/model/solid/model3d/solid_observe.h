@@ -11,11 +11,11 @@ struct dea_observer; // where each monitor is on the mesh, and its last values
 
 /* mesh: lent, outlives the observer. A monitor off its ply is a finding at its place and
  * DEA_E_DESIGN. pressures: [pressure_count], of the solid's loads, NULL where none of it is meshed;
- * contacts: [contact_count] the same; lent. out: owned by the caller, NULL on failure. */
+ * contacts: [contact_count] the same; lent. memory: of the observer. */
 dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                                struct dea_pressure *const *pressures,
-                               struct dea_contact *const *contacts, struct dea_observer **out);
-void dea_observer_destroy(struct dea_context *ctx, struct dea_observer *observer);
+                               struct dea_contact *const *contacts, struct dea_arena *memory,
+                               struct dea_observer **out);
 /* *out lends from the observer until the next call. */
 dea_status dea_observer_read(struct dea_context *ctx, struct dea_observer *observer,
                              struct dea_solid *solid, struct dea_observation *out);

@@ -246,7 +246,6 @@ static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
   model->memory = (struct dea_arena){.ctx = ctx};
   model->mesh = (struct dea_layout_mesh){.memory = {.ctx = ctx}};
   model->solid = NULL;
-  model->observer = NULL;
   model->pressures = NULL;
   model->contacts = NULL;
   dea_status status = build_variant(ctx, model);
@@ -291,7 +290,6 @@ void dea_variant_leave(struct dea_context *ctx, struct dea_model *model)
   dea_indent_end_variant(ctx, s, v->own.indent, v->indent);
   v->indent = NULL;
   if (model->device != v->own.device) {
-    dea_observer_destroy(ctx, model->observer);
     dea_solid_destroy(ctx, v->solid);
     v->solid = NULL;
     dea_layout_mesh_free(ctx, &model->mesh);

@@ -17,20 +17,11 @@ enum { TERMS = 5 };             // of the series
 static const double beyond = 2; // modes up to so many times the highest frequency
 
 struct dea_solid_response {
-  struct dea_arena memory; // of all arrays
-  size_t count, dofs;      // modes; 3 node_count
-  double *square, *shape;  // [count], [count][dofs]
-  double *push;            // [count] work of the electric force per volt on each mode
-  double *rest;            // [TERMS][dofs] what the modes leave, a series
+  size_t count, dofs;     // modes; 3 node_count
+  double *square, *shape; // [count], [count][dofs]
+  double *push;           // [count] work of the electric force per volt on each mode
+  double *rest;           // [TERMS][dofs] what the modes leave, a series
 };
-
-void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_response *r)
-{
-  if (r != NULL) {
-    dea_arena_free(&r->memory);
-    dea_free(ctx, r);
-  }
-}
 
 /* Takes the modes out of v: v -= phi (phi . Mv); work: [dofs]. */
 static dea_status purge(struct dea_context *ctx, const struct dea_solid *s,
@@ -68,16 +59,14 @@ static dea_status find_rest(struct dea_context *ctx, struct dea_solid *s,
 }
 
 static dea_status reserve(struct dea_context *ctx, const struct dea_solid *s, size_t count,
-                          struct dea_solid_response *r)
+                          struct dea_arena *memory, struct dea_solid_response *r)
 {
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): of the caller
   r->count = count;
   r->dofs = 3 * s->problem.grid->node_count;
-  r->memory.ctx = ctx;
-  dea_solid_alloc_doubles(&r->memory, count + 1, (double **[]){&r->square, &r->push, NULL});
-  r->shape = dea_arena_alloc(&r->memory, count * r->dofs + 1, sizeof *r->shape);
-  r->rest = dea_arena_alloc(&r->memory, TERMS * r->dofs, sizeof *r->rest);
-  return dea_solid_allreduce_any(r->memory.failed) ? DEA_E_MEMORY : DEA_OK;
+  dea_solid_alloc_doubles(memory, count + 1, (double **[]){&r->square, &r->push, NULL});
+  r->shape = dea_arena_alloc(memory, count * r->dofs + 1, sizeof *r->shape);
+  r->rest = dea_arena_alloc(memory, TERMS * r->dofs, sizeof *r->rest);
+  return dea_solid_allreduce(ctx, dea_arena_status(memory));
 }
 
 /* How many modes are needed; none of them may be unstable. */
@@ -107,18 +96,18 @@ static dea_status count_modes(struct dea_context *ctx, struct dea_solid *s, doub
 }
 
 static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double highest,
-                       struct dea_solid_response *r, double *force)
+                       struct dea_arena *memory, struct dea_solid_response *r)
 {
+  double *force = dea_arena_alloc(memory, s->problem.dofs, sizeof *force);
   size_t count = 0;
   DEA_TRY(ctx, count_modes(ctx, s, highest, &count));
-  DEA_TRY(ctx, reserve(ctx, s, count, r));
+  DEA_TRY(ctx, reserve(ctx, s, count, memory, r));
   DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, 0, force));
   if (count > 0) { // K stays there for the rest
     DEA_TRY(ctx, dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_MASS, count, r->square, r->shape));
   }
   for (size_t k = 0; k < count; k++) {
     for (size_t i = 0; i < r->dofs; i++) {
-      // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): of the caller
       r->push[k] += r->shape[k * r->dofs + i] * force[i];
     }
   }
@@ -134,19 +123,15 @@ dea_status dea_solid_response_check(struct dea_context *ctx, const struct dea_so
 }
 
 dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *s,
-                                     double highest_rad_per_s, struct dea_solid_response **out)
+                                     double highest_rad_per_s, struct dea_arena *memory,
+                                     struct dea_solid_response **out)
 {
-  *out = NULL;
   DEA_TRY(ctx, dea_solid_response_check(ctx, s));
-  double *force = dea_alloc(ctx, s->problem.dofs, sizeof *force);
-  struct dea_solid_response *r = dea_alloc(ctx, 1, sizeof *r);
-  dea_status status = dea_solid_allreduce_any(force == NULL || r == NULL) ? DEA_E_MEMORY : DEA_OK;
-  status = status == DEA_OK ? fill(ctx, s, highest_rad_per_s, r, force) : status;
+  *out = dea_arena_alloc(memory, 1, sizeof **out);
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(memory)));
+  const dea_status status = fill(ctx, s, highest_rad_per_s, memory, *out);
   s->found.factor_fits = s->found.predicted_fits = false;
-  dea_free(ctx, force);
-  DEA_TRY_ELSE(ctx, status, dea_solid_response_destroy(ctx, r));
-  *out = r;
-  return DEA_OK;
+  return DEA_CHAIN(ctx, status);
 }
 
 /* The rest at s: 1/c sum s^k r_k solves c K q - w^2 M q + i w (mass) M q = f beside the modes, with

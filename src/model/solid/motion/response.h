@@ -20,10 +20,10 @@ dea_status dea_solid_response_check(struct dea_context *ctx, const struct dea_so
 /* Prepares answers up to a frequency: all modes up to twice that, and of what the higher ones do a
  * series in omega^2. The solid has to be at a stable equilibrium and stays as it is; lent, outlives
  * the response. DEA_E_NOT_CONVERGED at an unstable one; DEA_E_UNSUPPORTED for a coupled field or
- * more than DEA_MODES_MAX modes. out: owned by the caller, NULL on failure. */
+ * more than DEA_MODES_MAX modes. memory: of the response. */
 dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *solid,
-                                     double highest_rad_per_s, struct dea_solid_response **out);
-void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_response *response);
+                                     double highest_rad_per_s, struct dea_arena *memory,
+                                     struct dea_solid_response **out);
 
 /* Displacements of a node per volt of the excitation dV exp(i omega t) [m/V]: real and imaginary
  * part. omega 0: slope of the static displacement. */

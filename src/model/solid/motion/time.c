@@ -193,7 +193,8 @@ static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
     t->driven = true;
   }
   if (options->branches != NULL) {
-    DEA_TRY(ctx, dea_internal_variables_create(ctx, s, options->branches, &t->variables));
+    DEA_TRY(ctx,
+            dea_internal_variables_create(ctx, s, options->branches, &t->memory, &t->variables));
     dea_internal_variables_begin(t->variables, s, 0);
     s->state.internal_variables = t->variables;
   }
@@ -255,7 +256,6 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
   t->solid->settings.accept_unstable = t->stay;
   t->solid->state.bulk_factor = 1;
   dea_solid_forget(t->solid); // what it has is of the step
-  dea_internal_variables_destroy(ctx, t->variables);
   dea_arena_free(&t->memory);
   dea_solid_saved_state_free(&t->accepted);
   dea_free(ctx, t);

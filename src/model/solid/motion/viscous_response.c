@@ -52,6 +52,7 @@ static bool are_alike(const struct dea_branches *a, const struct dea_branches *b
 static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size_t which, Mat *out)
 {
   struct dea_solid *s = y->solid;
+  struct dea_arena memory = {.ctx = ctx};
   struct dea_internal_variables *variables;
   // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): of the caller
   memset(y->only, 0, s->problem.part_material_count * sizeof *y->only);
@@ -60,12 +61,14 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
       y->only[l] = y->branches[l];
     }
   }
-  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, y->only, &variables));
-  dea_internal_variables_begin(variables, s, 0);
-  s->state.internal_variables = variables;
-  dea_status status = copy_tangent(ctx, y, out);
-  s->state.internal_variables = NULL;
-  dea_internal_variables_destroy(ctx, variables);
+  dea_status status = dea_internal_variables_create(ctx, s, y->only, &memory, &variables);
+  if (status == DEA_OK) {
+    dea_internal_variables_begin(variables, s, 0);
+    s->state.internal_variables = variables;
+    status = copy_tangent(ctx, y, out);
+    s->state.internal_variables = NULL;
+  }
+  dea_arena_free(&memory);
   DEA_TRY(ctx, status);
   return DEA_CHAIN(ctx, dea_solid_add_matrix(ctx, *out, -1, y->part[0]));
 }
