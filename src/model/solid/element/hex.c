@@ -417,8 +417,7 @@ dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea
     bending -= change != 0 ? change * change / part_material->kappa_Pa : 0;
     *stiffness += weight * bending;
     dea_element_at(s->nodes, s->value[q], motion->v, here);
-    *mass += part_material->density_kg_per_m3 * weight *
-             (here[0] * here[0] + here[1] * here[1] + here[2] * here[2]);
+    *mass += part_material->density_kg_per_m3 * weight * dea_dot(here, here);
   }
   return DEA_OK;
 }
@@ -615,7 +614,7 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
     }
     double normal[3] = {F[3] * F[7] - F[6] * F[4], F[6] * F[1] - F[0] * F[7],
                         F[0] * F[4] - F[3] * F[1]};
-    out->area[p] = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    out->area[p] = sqrt(dea_dot(normal, normal));
     const double plane[6] = {F[0], F[1], F[3], F[4], F[6], F[7]};
     double *T = out->force[p];
     dea_membrane_force(N, plane, out->area[p], T);
@@ -686,7 +685,7 @@ static double add_electric(double eps, const struct dea_hex_field *field, double
       P[3 * k + L] -= eps * (E[J] * field->A[k][N] - E[N] * field->A[k][J]);
     }
   }
-  return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+  return sqrt(dea_dot(w, w));
 }
 
 /* P, all of it, and the field at J = 1. coupled: the field, NULL for a thin film with

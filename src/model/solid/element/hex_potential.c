@@ -135,7 +135,7 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
     struct dea_hex_field field;
     dea_hex_field_at(shape, &points[q], gradient[q], in->potential, c, &field);
     const double *w = field.w;
-    out->energy_J -= 0.5 * eps * points[q].weight * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    out->energy_J -= 0.5 * eps * points[q].weight * dea_dot(w, w);
     if (order >= DEA_FORCE) {
       add_force(shape, eps, c, &points[q], gradient[q], &field, out->g);
     }

@@ -310,8 +310,7 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
     for (int a = 0; a < 36; a++) {
       *stiffness += weight * H[a / 6] * point.A[a] * H[a % 6];
     }
-    *mass += part_material->density_kg_per_m3 * weight *
-             (here[0] * here[0] + here[1] * here[1] + here[2] * here[2]);
+    *mass += part_material->density_kg_per_m3 * weight * dea_dot(here, here);
   }
   return DEA_OK;
 }
@@ -348,7 +347,7 @@ static double complete(const double F[6], double out[9])
   // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): columns_at has set F
   const double normal[3] = {F[2] * F[5] - F[4] * F[3], F[4] * F[1] - F[0] * F[5],
                             F[0] * F[3] - F[2] * F[1]};
-  double square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+  double square = dea_dot(normal, normal);
   for (int i = 0; i < 3; i++) {
     out[3 * i] = F[2 * i];
     out[3 * i + 1] = F[2 * i + 1];

@@ -48,11 +48,6 @@ static int nodes_of(const struct dea_contact *c, size_t at, int nodes[DEA_PIECE_
   return 1 + c->other->face_nodes;
 }
 
-static double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Values and slopes of order 1 and 2 along one axis of a face, [3][order + 1]. */
 static void line_at(int order, double x, double out[3][DEA_HEX_ORDER_MAX + 1])
 {
@@ -131,10 +126,10 @@ static void find_nearest(const int order[2], const double (*x)[3], const double 
       d[i] = p[i] - near->x[0][i];
     }
     const double *a = near->x[1], *b = near->x[2];
-    const double r[2] = {dot(d, a), dot(d, b)};
-    A[0] = dot(a, a) - dot(d, near->curved[0]);
-    A[1] = dot(a, b) - dot(d, near->curved[1]);
-    A[2] = dot(b, b) - dot(d, near->curved[2]);
+    const double r[2] = {dea_dot(d, a), dea_dot(d, b)};
+    A[0] = dea_dot(a, a) - dea_dot(d, near->curved[0]);
+    A[1] = dea_dot(a, b) - dea_dot(d, near->curved[1]);
+    A[2] = dea_dot(b, b) - dea_dot(d, near->curved[2]);
     invert(A, H);
     const double s[2] = {H[0] * r[0] + H[1] * r[1], H[1] * r[0] + H[2] * r[1]};
     step = fmax(fabs(s[0]), fabs(s[1]));
@@ -160,8 +155,8 @@ static void bend(const struct nearest *near, const double n[3], double gap, int 
     }
   }
   for (int k = 0; k < 3; k++) {
-    A[k] = dot(near->x[k < 2 ? 1 : 2], near->x[k < 1 ? 1 : 2]);
-    B[k] = dot(n, near->curved[k]);
+    A[k] = dea_dot(near->x[k < 2 ? 1 : 2], near->x[k < 1 ? 1 : 2]);
+    B[k] = dea_dot(n, near->curved[k]);
     C[k] = A[k] - gap * B[k];
   }
   invert(A, G);
@@ -207,7 +202,7 @@ static double facing_gap(const struct dea_contact *c, int count, const double (*
   find_nearest(c->other->order, x + 1, x[0], near);
   const double *a = near->x[1], *b = near->x[2];
   dea_cross(a, b, n);
-  const double length = sqrt(dot(n, n));
+  const double length = sqrt(dea_dot(n, n));
   for (int i = 0; i < 3; i++) {
     from[i] = x[0][i] - near->x[0][i];
     n[i] /= length;
@@ -216,9 +211,9 @@ static double facing_gap(const struct dea_contact *c, int count, const double (*
     slope[i] = (i < 3 ? 1 : -near->N[0][i / 3 - 1]) * n[i % 3];
   }
   if (hessian != NULL) {
-    bend(near, n, dot(n, from), count, hessian);
+    bend(near, n, dea_dot(n, from), count, hessian);
   }
-  return dot(n, from);
+  return dea_dot(n, from);
 }
 
 /* What the gap at a point is, and its slopes by the displacements of its nodes. */

@@ -15,8 +15,7 @@ void dea_load_traction(const struct dea_surface *surface, const double traction_
     dea_face_gather(surface, f, surface->grid->X, X);
     for (int q = 0; q < shape.points; q++) {
       dea_face_normal(&shape, q, X, normal);
-      double area = shape.weight[q] *
-                    sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+      double area = shape.weight[q] * sqrt(dea_dot(normal, normal));
       for (int n = 0; n < shape.nodes; n++) {
         for (int i = 0; i < 3; i++) {
           force[3 * nodes[n] + i] += traction_Pa[i] * area * shape.value[q][n];

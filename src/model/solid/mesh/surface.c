@@ -98,7 +98,7 @@ static double point_area(const struct dea_face_shape *shape, int point, const do
 {
   double n[3];
   dea_face_normal(shape, point, X, n);
-  return shape->weight[point] * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  return shape->weight[point] * sqrt(dea_dot(n, n));
 }
 
 double *dea_surface_weights(struct dea_arena *memory, const struct dea_surface *surface,

@@ -24,11 +24,6 @@ struct work {
   struct cell *cells; // NULL: they are counted
 };
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Of a lattice of such cells, what the sum of 1/r over the others lacks of the integral over all:
  * less its Epstein zeta function at 1/2, 3.90 for unit squares, by Ewald's sums, of which the two
  * are equal in the plane. */
@@ -38,7 +33,8 @@ static double own_potential(const double a[3], const double b[3], double area)
   double sum = 0;
   for (int i = -FAR; i <= FAR; i++) {
     for (int j = -FAR; j <= FAR; j++) {
-      const double r = sqrt(fmax(i * i * dot(a, a) + 2 * i * j * dot(a, b) + j * j * dot(b, b), 0));
+      const double r =
+          sqrt(fmax(i * i * dea_dot(a, a) + 2 * i * j * dea_dot(a, b) + j * j * dea_dot(b, b), 0));
       sum += i != 0 || j != 0 ? erfc(sqrt(pi / area) * r) / r : 0;
     }
   }
@@ -84,10 +80,10 @@ static void add_cell(struct work *w, const int *nodes, int row, const double at[
   double normal[3];
   dea_cross(a, b, normal);
   memcpy(cell->x, x[0], sizeof cell->x);
-  cell->own = own_potential(a, b, sqrt(dot(normal, normal)));
+  cell->own = own_potential(a, b, sqrt(dea_dot(normal, normal)));
   for (size_t k = 0; k < w->count; k++) {
     interpolate(w->shapes + 3 * k * w->surface->point_count, nodes, row, basis, v);
-    cell->flux[k] = dot(v[0], normal);
+    cell->flux[k] = dea_dot(v[0], normal);
   }
 }
 
@@ -99,7 +95,7 @@ static void divide(struct work *w, const int *nodes, int row, double length)
   size_t n[2];
   find_place(w, nodes, row, (const double[2]){0, 0}, basis, x);
   for (int k = 0; k < 2; k++) {
-    side[k] = 2 * sqrt(dot(x[k + 1], x[k + 1]));
+    side[k] = 2 * sqrt(dea_dot(x[k + 1], x[k + 1]));
   }
   w->area += side[0] * side[1];
   length = fmin(length, SLIM * fmin(side[0], side[1]));
@@ -142,7 +138,7 @@ static void add_products(const struct work *w, size_t i, const struct dea_layout
     for (size_t j = 0; j < w->cell_count; j++) {
       const struct cell *from = &w->cells[j];
       const double d[3] = {x[0] - from->x[0], x[1] - from->x[1], to->x[2] - from->x[2]};
-      const double by = c == 0 && i == j ? from->own : 1 / sqrt(dot(d, d));
+      const double by = c == 0 && i == j ? from->own : 1 / sqrt(dea_dot(d, d));
       for (size_t k = 0; k < w->count; k++) {
         potential[k] += by * from->flux[k];
       }

@@ -285,11 +285,6 @@ static double radius_of(const struct dea_layout_monitor *m, double along[3])
   return length;
 }
 
-static double length_of(const double v[3])
-{
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* From one end of a line to the other; returns its length in the flat state. */
 static double line_between(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
                            const struct probe probe[2], const double *u, double now[3])
@@ -385,7 +380,7 @@ static double tangent_length(const struct dea_layout_mesh *mesh, bool along_y,
     for (int i = 0; i < 3; i++) {
       along[i] = at->F[i][0] * a[0] + at->F[i][1] * a[1];
     }
-    const double length = length_of(along);
+    const double length = sqrt(dea_dot(along, along));
     mean += length / (double)copies;
     for (int i = 0; i < 3 * at->nodes && weight != NULL; i++) {
       const int n = i / 3;
@@ -500,7 +495,7 @@ static void observe_contact(const struct dea_observer *o, size_t contact, const 
     double force_N[3];
     dea_contact_force(o->contacts[contact], u, force_N);
     sum_up_forces(o->mesh, 3, force_N);
-    values[DEA_OBSERVED_CONTACT_FORCE] = length_of(force_N);
+    values[DEA_OBSERVED_CONTACT_FORCE] = sqrt(dea_dot(force_N, force_N));
     values[DEA_OBSERVED_CONTACT_AREA] =
         (double)dea_layout_sector_copies(&o->mesh->sector) * dea_contact_area(o->contacts[contact]);
   }
@@ -586,7 +581,7 @@ static size_t ways_of_probes(const struct dea_observer *o, const double *u, size
   double now[3], flat = 0, size = 0;
   if (count == 2) {
     flat = line_between(o->mesh, m, probes, u, now);
-    size = length_of(now);
+    size = sqrt(dea_dot(now, now));
   }
   for (size_t p = 0; p < count; p++) {
     for (int i = 0; i < 3; i++) {
@@ -637,7 +632,7 @@ static void observe_monitor(struct dea_observer *o, struct dea_solid *solid, siz
     break;
   case DEA_MONITOR_LINE:
     values[DEA_OBSERVED_STRETCH] = 1 / line_between(o->mesh, m, o->probes[i], u, now);
-    values[DEA_OBSERVED_STRETCH] *= length_of(now);
+    values[DEA_OBSERVED_STRETCH] *= sqrt(dea_dot(now, now));
     break;
   case DEA_MONITOR_REGION:
     observe_region(o->mesh, m, u, values, motion, weight);

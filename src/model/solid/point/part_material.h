@@ -110,5 +110,10 @@ static inline void dea_cross(const double a[3], const double b[3], double out[3]
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+static inline double dea_dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
 double dea_cofactors(const double F[9], double cof[9]);

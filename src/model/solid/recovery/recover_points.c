@@ -178,11 +178,6 @@ double dea_recover_height(const struct dea_recover_input *in, size_t element, in
 
 /* ---- state in the plane ---- */
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Eigenvalues of a symmetric 2 x 2 matrix, the larger first. */
 static void principal(double xx, double yy, double xy, double out[2])
 {
@@ -195,10 +190,11 @@ void dea_recover_plane(const struct dea_part_material *part_material, const doub
                        const double force[6], struct dea_plane_state *out)
 {
   const double a[3] = {F[0], F[3], F[6]}, b[3] = {F[1], F[4], F[7]};
-  double normal[3], e[2][3], T[2][2], squares[2], cof[9], C[3] = {dot(a, a), dot(b, b), dot(a, b)};
-  double length = sqrt(dot(a, a));
+  double normal[3], e[2][3], T[2][2], squares[2], cof[9],
+      C[3] = {dea_dot(a, a), dea_dot(b, b), dea_dot(a, b)};
+  double length = sqrt(dea_dot(a, a));
   dea_cross(a, b, normal);
-  out->area = sqrt(dot(normal, normal));
+  out->area = sqrt(dea_dot(normal, normal));
   dea_part_material_pull_back(part_material, C, C);
   principal(C[0], C[1], C[2], squares);
   out->stretch[0] = sqrt(squares[0]);
@@ -213,7 +209,7 @@ void dea_recover_plane(const struct dea_part_material *part_material, const doub
   }
   for (int r = 0; r < 2; r++) { // T = N F^T / area
     for (int c = 0; c < 2; c++) {
-      double ea = dot(e[c], a), eb = dot(e[c], b);
+      double ea = dea_dot(e[c], a), eb = dea_dot(e[c], b);
       T[r][c] = 0;
       for (int i = 0; i < 3; i++) {
         T[r][c] += e[r][i] * (force[2 * i] * ea + force[2 * i + 1] * eb) / out->area;
