@@ -18,9 +18,9 @@ static bool has_error(const struct dea_load_point *point)
 }
 
 /* Of the main motion of a monitor at a point without a doubt; otherwise, and of a body that is held
- * along it, NAN. weight: room, [dofs]; part: of each element, may be NULL. */
+ * along it, NAN. part: of each element, may be NULL. */
 static dea_status find_error(struct dea_context *ctx, struct dea_model *model, size_t monitor,
-                             const double *values, double *weight, double *error, double *part)
+                             const double *values, double *error, double *part)
 {
   const struct dea_layout_monitor *m = &model->layout->monitors[monitor];
   enum dea_observed motion = dea_observed_main(values);
@@ -31,10 +31,13 @@ static dea_status find_error(struct dea_context *ctx, struct dea_model *model, s
       return DEA_OK;
     }
   }
+  double *weight = dea_solid_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
+  DEA_TRY_MEMORY(weight != NULL);
   dea_observer_gradient(model->observer, model->solid, monitor, motion, weight);
   struct dea_recover_quantity one = {.z = weight};
   one.probe_count = dea_observer_probes(model->observer, model->solid, monitor, motion, one.probes);
   dea_status status = dea_solid_errors(ctx, model->solid, &one, 1, error, part);
+  dea_free(ctx, weight);
   return status == DEA_E_DOMAIN ? DEA_OK : status; // at the end of a law none is known
 }
 
@@ -46,17 +49,11 @@ dea_status dea_solid_model_errors(struct dea_context *ctx, struct dea_model *mod
   DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
   for (size_t i = 0; i < seen.monitor_count; i++) {
     error[i] = NAN;
+    if (has_error(&point)) {
+      DEA_TRY(ctx, find_error(ctx, model, i, seen.monitor[i], &error[i], NULL));
+    }
   }
-  if (!has_error(&point)) {
-    return DEA_OK;
-  }
-  double *weight = dea_solid_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
-  dea_status status = weight == NULL ? DEA_E_MEMORY : DEA_OK;
-  for (size_t i = 0; i < seen.monitor_count && status == DEA_OK; i++) {
-    status = find_error(ctx, model, i, seen.monitor[i], weight, &error[i], NULL);
-  }
-  dea_free(ctx, weight);
-  return status;
+  return DEA_OK;
 }
 
 // Sizes ------------------------------------------------------------------------------------------
@@ -102,12 +99,12 @@ static void gather(const struct dea_layout_mesh *mesh, const double *part, doubl
 
 /* Sizes of the next mesh. part: [element_count], as dea_recover_errors; wanted: error that it
  * should have, > 0. at: [quad_count of the plane mesh] x, y, size [m]. */
-static dea_status find_sizes(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+static dea_status find_sizes(struct dea_arena *memory, const struct dea_layout_mesh *mesh,
                              const double *part, double wanted, double (*at)[3])
 {
   size_t count = mesh->plane->quad_count;
-  double *sum = dea_alloc(ctx, count, sizeof *sum), roots = 0;
-  DEA_TRY_MEMORY(sum != NULL);
+  double *sum = dea_arena_alloc(memory, count, sizeof *sum), roots = 0;
+  DEA_TRY_STATUS(dea_arena_status(memory));
   gather(mesh, part, sum);
   for (size_t q = 0; q < count; q++) {
     roots += sqrt(sum[q]);
@@ -117,7 +114,6 @@ static dea_status find_sizes(struct dea_context *ctx, const struct dea_layout_me
     double size = sqrt(area_of(mesh->plane, q, at[q]));
     at[q][2] = size * fmin(coarsest, fmax(finest, ratio)); // coarsest where the sum is 0
   }
-  dea_free(ctx, sum);
   return DEA_OK;
 }
 
@@ -125,12 +121,13 @@ static dea_status find_sizes(struct dea_context *ctx, const struct dea_layout_me
 
 /* One mesh after the other, each finer where the error of the last one came from. */
 struct adaptation {
+  struct dea_arena memory; // of sizes and errors
   const struct dea_device *device;
   struct dea_model_settings settings; // with the sizes of the present mesh
   size_t monitor;                     // of the layout
   struct dea_adapt_pass *pass;        // [settings.adapt.passes], owned
   size_t count;
-  double (*now)[3], (*next)[3]; // sizes of this mesh and the next one, owned
+  double (*next)[3]; // [next_count] sizes of the next mesh
   size_t next_count;
 };
 
@@ -148,6 +145,10 @@ static dea_status estimate_mesh_error(struct dea_context *ctx, struct adaptation
   struct dea_load_point point;
   struct dea_observation seen;
   const struct dea_grid *grid = model->mesh.grid;
+  double *part = dea_arena_alloc(&a->memory, grid->element_count, sizeof *part);
+  a->next_count = model->mesh.plane->quad_count;
+  a->next = dea_arena_alloc(&a->memory, a->next_count, sizeof *a->next);
+  DEA_TRY(ctx, dea_solid_allreduce(ctx, dea_arena_status(&a->memory)));
   DEA_TRY(ctx, dea_solid_model_solve(ctx, model, a->settings.adapt.voltage_V, &point));
   DEA_TRY(ctx, dea_observer_read(ctx, model->observer, model->solid, &seen));
   const double *values = seen.monitor[a->monitor];
@@ -157,26 +158,16 @@ static dea_status estimate_mesh_error(struct dea_context *ctx, struct adaptation
                                   .unknowns = 3 * grid->node_count,
                                   .value = values[motion],
                                   .error = NAN};
-  double *weight = dea_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
-  double *part = dea_alloc(ctx, grid->element_count, sizeof *part);
-  double(*at)[3] = dea_resize(ctx, a->next, model->mesh.plane->quad_count, sizeof *at);
-  a->next = at != NULL ? at : a->next;
-  dea_status status =
-      dea_solid_allreduce_any(weight == NULL || part == NULL || at == NULL) ? DEA_E_MEMORY : DEA_OK;
-  if (status == DEA_OK && has_error(&point)) {
-    status = find_error(ctx, model, a->monitor, values, weight, &pass->error, part);
+  if (has_error(&point)) {
+    DEA_TRY(ctx, find_error(ctx, model, a->monitor, values, &pass->error, part));
   }
   double wanted = a->settings.adapt.tolerance * fabs(pass->value - (ratio ? 1 : 0));
-  if (status == DEA_OK && wanted > 0 && !isnan(pass->error)) {
-    pass->within = pass->error <= wanted;
-    a->next_count = model->mesh.plane->quad_count;
-    status = find_sizes(ctx, &model->mesh, part, wanted, a->next);
-  } else if (status == DEA_OK) {
+  if (!(wanted > 0) || isnan(pass->error)) {
     pass->error = NAN; // of what does not move, too
+    return DEA_OK;
   }
-  dea_free(ctx, part);
-  dea_free(ctx, weight);
-  return status;
+  pass->within = pass->error <= wanted;
+  return DEA_CHAIN(ctx, find_sizes(&a->memory, &model->mesh, part, wanted, a->next));
 }
 
 static dea_status find_monitor(struct dea_context *ctx, struct adaptation *a)
@@ -219,10 +210,7 @@ static dea_status adapt(struct dea_context *ctx, struct adaptation *a, struct de
     a->count++;
     on = a->count < most && !pass->within && !isnan(pass->error);
     if (on) {
-      double(*sizes)[3] = a->now;
-      a->now = a->next;
-      a->next = sizes;
-      a->settings.sizes = (const double(*)[3])a->now;
+      a->settings.sizes = (const double(*)[3])a->next;
       a->settings.size_count = a->next_count;
     }
     dea_solid_model_destroy(ctx, *model);
@@ -236,7 +224,8 @@ dea_status dea_solid_model_create(struct dea_context *ctx, const struct dea_devi
                                   const struct dea_model_settings *settings, struct dea_model **out)
 {
   static const struct dea_model_settings usual = {0};
-  struct adaptation a = {.device = device, .settings = settings != NULL ? *settings : usual};
+  struct adaptation a = {
+      .memory = {.ctx = ctx}, .device = device, .settings = settings != NULL ? *settings : usual};
   bool asked = a.settings.adapt.monitor != NULL;
   *out = NULL;
   dea_status status = asked ? find_monitor(ctx, &a) : DEA_OK;
@@ -253,7 +242,6 @@ dea_status dea_solid_model_create(struct dea_context *ctx, const struct dea_devi
     *out = NULL;
   }
   dea_free(ctx, a.pass);
-  dea_free(ctx, a.now);
-  dea_free(ctx, a.next);
+  dea_arena_free(&a.memory);
   return DEA_CHAIN(ctx, status);
 }
