@@ -162,8 +162,8 @@ static void list_elements(const struct dea_solid *s, size_t *first, int *element
 
 /* Upper block row lengths of own rows: neighbours of a node that are not before it, those whose
  * rows are own and those of later ranks. */
-static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *s, PetscInt *own,
-                               PetscInt *others)
+static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *s,
+                               struct dea_solid_row_lengths *out)
 {
   const struct dea_solid_problem *p = &s->problem;
   const struct dea_grid *grid = p->grid;
@@ -172,32 +172,26 @@ static dea_status count_blocks(struct dea_context *ctx, const struct dea_solid *
   for (size_t e = 0; e < couplings_of(s); e++) {
     places += (size_t)joint_nodes(s, e, joint);
   }
-  size_t *first = dea_alloc(ctx, grid->node_count + 2, sizeof *first);
-  int *elements = dea_alloc(ctx, places, sizeof *elements);
-  int *seen = dea_alloc(ctx, grid->node_count, sizeof *seen);
-  bool done = first != NULL && elements != NULL && seen != NULL;
-  if (done) {
-    list_elements(s, first, elements);
-    for (size_t i = p->first_node; i < p->end_node; i++) {
-      size_t row = i - p->first_node;
-      own[row] = others[row] = 0;
-      for (size_t k = first[i]; k < first[i + 1]; k++) {
-        int count = joint_nodes(s, (size_t)elements[k], joint);
-        for (int n = 0; n < count; n++) {
-          size_t column = (size_t)joint[n];
-          if (column >= i && seen[column] != (int)i + 1) {
-            seen[column] = (int)i + 1;
-            *(column < p->end_node ? &own[row] : &others[row]) += 1;
-          }
+  size_t *first = dea_arena_alloc(&out->memory, grid->node_count + 2, sizeof *first);
+  int *elements = dea_arena_alloc(&out->memory, places, sizeof *elements);
+  int *seen = dea_arena_alloc(&out->memory, grid->node_count, sizeof *seen);
+  DEA_TRY(ctx, dea_arena_status(&out->memory));
+  list_elements(s, first, elements);
+  for (size_t i = p->first_node; i < p->end_node; i++) {
+    size_t row = i - p->first_node;
+    for (size_t k = first[i]; k < first[i + 1]; k++) {
+      int count = joint_nodes(s, (size_t)elements[k], joint);
+      for (int n = 0; n < count; n++) {
+        size_t column = (size_t)joint[n];
+        if (column >= i && seen[column] != (int)i + 1) {
+          seen[column] = (int)i + 1;
+          *(column < p->end_node ? &out->own[row] : &out->others[row]) += 1;
         }
       }
-      own[row] += own[row] == 0; // a node of a body without elements
     }
+    out->own[row] += out->own[row] == 0; // a node of a body without elements
   }
-  dea_free(ctx, first);
-  dea_free(ctx, elements);
-  dea_free(ctx, seen);
-  return done ? DEA_OK : DEA_E_MEMORY;
+  return DEA_OK;
 }
 
 static dea_status split_and_count(struct dea_context *ctx, struct dea_solid *s,
@@ -208,11 +202,10 @@ static dea_status split_and_count(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, split_elements(ctx, s));
   s->work.predicted = dea_arena_alloc(&s->memory, p->own_count * p->elements.predicted_count,
                                       sizeof *s->work.predicted);
-  lengths->own = dea_alloc(ctx, rows, sizeof *lengths->own);
-  lengths->others = dea_alloc(ctx, rows, sizeof *lengths->others);
-  return s->work.predicted != NULL && lengths->own != NULL && lengths->others != NULL
-             ? count_blocks(ctx, s, lengths->own, lengths->others)
-             : DEA_E_MEMORY;
+  DEA_TRY(ctx, dea_arena_status(&s->memory));
+  lengths->own = dea_arena_alloc(&lengths->memory, rows, sizeof *lengths->own);
+  lengths->others = dea_arena_alloc(&lengths->memory, rows, sizeof *lengths->others);
+  return DEA_CHAIN(ctx, count_blocks(ctx, s, lengths));
 }
 
 dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s, dea_status before,

@@ -6,12 +6,13 @@
 
 /* Upper block row lengths of this rank's rows: columns that are here and on other ranks. */
 struct dea_solid_row_lengths {
+  struct dea_arena memory;
   PetscInt *own, *others; // [end_node - first_node] each
 };
 
 /* Splits rows and elements over the ranks; K and vectors of its rows. *lengths: for other matrices
- * of the nodes, owned by the caller. before: how the creation went up to here, agreed on with the
- * others. */
+ * of the nodes; the caller frees its memory. before: how the creation went up to here, agreed on
+ * with the others. */
 dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s, dea_status before,
                                    struct dea_solid_row_lengths *lengths);
 void dea_solid_destroy_matrix(struct dea_solid *s);

@@ -122,11 +122,10 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
   p->dofs = (size_t)p->per_node * grid->node_count;
   dea_status status = dea_element_set_create(ctx, grid->order, options->order_z, &p->elements);
   status = status == DEA_OK ? fill_solid(ctx, s, options) : status;
-  struct dea_solid_row_lengths lengths = {0};
+  struct dea_solid_row_lengths lengths = {.memory = {.ctx = ctx}};
   status = dea_solid_create_matrix(ctx, s, status, &lengths);
   status = status == DEA_OK ? dea_solid_field_matrix(ctx, s, &lengths) : status;
-  dea_free(ctx, lengths.own);
-  dea_free(ctx, lengths.others);
+  dea_arena_free(&lengths.memory);
   DEA_TRY_ELSE(ctx, status, dea_solid_destroy(ctx, s));
   *out = s;
   return DEA_OK;
