@@ -50,26 +50,25 @@ dea_status dea_lift_force_max(const struct dea_lumped *lumped, const struct dea_
   static const double golden = 0.61803398874989485;
   double low = 0, high = height_free_m, force[2] = {0, 0};
   double z[2] = {high - golden * (high - low), low + golden * (high - low)};
-  dea_status status = DEA_OK;
-  for (int i = 0; i < 2 && status == DEA_OK; i++) {
-    status = dea_lift_force(lumped, lift, nominal_field_V_per_m, z[i], &force[i]);
+  for (int i = 0; i < 2; i++) {
+    DEA_TRY_STATUS(dea_lift_force(lumped, lift, nominal_field_V_per_m, z[i], &force[i]));
   }
-  while (status == DEA_OK && high - low > 1e-9 * height_free_m) { // golden section: one maximum
+  while (high - low > 1e-9 * height_free_m) { // golden section: one maximum
     if (force[0] > force[1]) {
       high = z[1];
       z[1] = z[0];
       force[1] = force[0];
       z[0] = high - golden * (high - low);
-      status = dea_lift_force(lumped, lift, nominal_field_V_per_m, z[0], &force[0]);
+      DEA_TRY_STATUS(dea_lift_force(lumped, lift, nominal_field_V_per_m, z[0], &force[0]));
     } else {
       low = z[0];
       z[0] = z[1];
       force[0] = force[1];
       z[1] = low + golden * (high - low);
-      status = dea_lift_force(lumped, lift, nominal_field_V_per_m, z[1], &force[1]);
+      DEA_TRY_STATUS(dea_lift_force(lumped, lift, nominal_field_V_per_m, z[1], &force[1]));
     }
   }
   *height_m = 0.5 * (low + high);
   *force_N = fmax(force[0], force[1]);
-  return status;
+  return DEA_OK;
 }

@@ -82,14 +82,13 @@ dea_status dea_solid_element_capacitance(struct dea_solid *s, size_t e, const do
   square *= square;
   const double squares[2] = {fmax(square - step * step, 0), square + step * step};
   double energy[2] = {0, 0};
-  dea_status status = DEA_OK;
-  for (int i = 0; i < 2 && status == DEA_OK; i++) {
+  for (int i = 0; i < 2; i++) {
     at.in.voltage_V = sqrt(squares[i]);
-    status = element->type->evaluate(element, &at.in, DEA_ENERGY, s->work.element);
+    DEA_TRY_STATUS(element->type->evaluate(element, &at.in, DEA_ENERGY, s->work.element));
     energy[i] = s->work.element->energy_J;
   }
   *capacitance_F = 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]);
-  return status;
+  return DEA_OK;
 }
 
 static dea_status refuse_coupled(struct dea_context *ctx, const struct dea_solid *s)

@@ -71,15 +71,15 @@ static dea_status add_motion(struct dea_solid *s, size_t e, const double *v, con
   const struct dea_element_motion motion = {
       .v = moving, .potential = potential, .pressure = q + e * (size_t)p->elements.pressures};
   at.part_material.kappa_Pa *= DEA_SOLID_STIFF;
-  dea_status status = element->type->motion(element, &at.in, &motion, &element_stiffness, &moved);
-  if (status == DEA_OK && p->body_count > 0) {
+  DEA_TRY_STATUS(element->type->motion(element, &at.in, &motion, &element_stiffness, &moved));
+  if (p->body_count > 0) {
     at.part_material.kappa_Pa = 0;
-    status = element->type->evaluate(element, &at.in, DEA_FORCE, s->work.element);
+    DEA_TRY_STATUS(element->type->evaluate(element, &at.in, DEA_FORCE, s->work.element));
     add_forces(s, count, nodes, element->type->per_node, s->work.element->g);
   }
   *stiffness += element_stiffness;
   *mass += moved;
-  return status;
+  return DEA_OK;
 }
 
 /* 2 q . C_u v - w q^2 / k of the constraints of loads. */
