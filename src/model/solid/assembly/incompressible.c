@@ -7,11 +7,7 @@
 
 double dea_solid_theta_max(const struct dea_solid *s)
 {
-  double most = 0;
-  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    most = fmax(most, fabs(s->state.theta[i]));
-  }
-  return most;
+  return dea_largest(dea_solid_pressure_count(s), s->state.theta);
 }
 
 void dea_solid_update_multipliers(struct dea_solid *s)

@@ -39,10 +39,8 @@ static double energy_beside(struct dea_context *ctx, struct dea_solid *s, const 
 static double choose_push(struct dea_context *ctx, struct dea_solid *s, const double *u,
                           const double *mode, double metres, int side, double energy)
 {
-  double most = 0, push = 0, lowest = energy;
-  for (size_t i = 0; i < 3 * s->problem.grid->node_count; i++) {
-    most = fmax(most, fabs(mode[i]));
-  }
+  const double most = dea_largest(3 * s->problem.grid->node_count, mode);
+  double push = 0, lowest = energy;
   for (double size = metres / most; push == 0 && size > 1e-4 * metres / most; size /= 2) {
     double up = side >= 0 ? energy_beside(ctx, s, u, mode, size) : INFINITY;
     double down = side <= 0 ? energy_beside(ctx, s, u, mode, -size) : INFINITY;
@@ -375,7 +373,7 @@ static dea_status find_freedom(struct dea_context *ctx, struct dea_solid *s,
   struct dea_solid_problem *p = &s->problem;
   const struct dea_part_material *own = p->part_materials;
   const size_t nodes = p->grid->node_count;
-  double energy, far = 0, wide = 0;
+  double energy;
   *free = true;
   if (!s->found.factor_fits) {
     return DEA_OK;
@@ -386,13 +384,9 @@ static dea_status find_freedom(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, status);
   for (size_t k = 0; k < 3 * nodes; k++) {
     s->work.trial[k] = (k % 3 == 2) == dea_solid_turns_body(s, k / 3) ? -s->work.g[k] : 0;
-    wide = fmax(wide, fabs(p->grid->X[k]));
   }
   DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
-  for (size_t k = 0; k < 3 * nodes; k++) {
-    far = fmax(far, fabs(s->work.step[k]));
-  }
-  *free = far > wide;
+  *free = dea_largest(3 * nodes, s->work.step) > dea_largest(3 * nodes, p->grid->X);
   return DEA_OK;
 }
 

@@ -52,15 +52,6 @@ static double norm(const struct dea_solid *s, const double *v)
   return sqrt(dea_solid_dot(s, v, v));
 }
 
-static double largest(const struct dea_solid *s, const double *v)
-{
-  double most = 0;
-  for (size_t i = 0; i < s->problem.dofs; i++) {
-    most = fmax(most, fabs(v[i]));
-  }
-  return most;
-}
-
 /* ---- linear steps ---- */
 
 enum { SOME = 5, MANY = 20 }; // negative pivots
@@ -360,12 +351,10 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     if (found) {
       dea_context_counters(ctx)->newton_iterations++;
       bool quadratic = fabs(rise + 0.5) < 0.05 && fraction == 1;
-      *done =
-          !start && there == 0 && largest(s, s->work.step) < o->newton_stol * s->problem.length_m;
-      d->stalled =
-          there > 0 && fraction * largest(s, s->work.step) < o->newton_stol * s->problem.length_m
-              ? d->stalled + 1
-              : 0;
+      const double moved_m = dea_largest(s->problem.dofs, s->work.step),
+                   least_m = o->newton_stol * s->problem.length_m;
+      *done = !start && there == 0 && moved_m < least_m;
+      d->stalled = there > 0 && fraction * moved_m < least_m ? d->stalled + 1 : 0;
       d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
       DEA_TRY(ctx, apply_step(ctx, s, d, fraction, !*done));
       if (start) {

@@ -39,11 +39,11 @@ struct search {
   bool left;             // it may lead out of the plane of a flat film
 };
 
-/* The equilibrium that the solid is at is where what follows begins. */
-static void start_here(struct search *a)
+/* Where the solid is. */
+static void keep_state(const struct search *a, const struct dea_solid_saved_state *out)
 {
-  dea_solid_state_get(a->s, a->start.state);
-  dea_solid_controls_get(a->s, a->start.controls);
+  dea_solid_state_get(a->s, out->state);
+  dea_solid_controls_get(a->s, out->controls);
 }
 
 /* The sink looks at where the solid is. */
@@ -86,11 +86,7 @@ static double deflection_m(struct dea_solid *s, const double *u)
 {
   size_t count;
   const double *heights = sum_columns(s, u, 2, &count);
-  double largest = 0;
-  for (size_t c = 0; c < count; c++) {
-    largest = fmax(largest, fabs(heights[c]));
-  }
-  return largest;
+  return dea_largest(count, heights);
 }
 
 static bool is_flat(struct dea_solid *s, const double *u, double size_m)
@@ -170,8 +166,7 @@ static dea_status record_stop(struct dea_context *ctx, struct search *a,
   DEA_TRY(ctx, status);
   a->stop->voltage_V = at->voltage_V;
   a->stop->load_factor = at->load;
-  dea_solid_state_get(a->s, a->limit.state);
-  dea_solid_controls_get(a->s, a->limit.controls);
+  keep_state(a, &a->limit);
   return report_point(ctx, a, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind);
 }
 
@@ -306,7 +301,7 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
 {
   struct dea_continuation_options options = {path_step, max_path_step, 0, true};
   struct dea_solid_continuation *path = NULL;
-  start_here(a);
+  keep_state(a, &a->start);
   options.unit_m = unit_of(a->s, a->start.controls, a->goal);
   a->went_on = false;
   *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
@@ -414,7 +409,7 @@ static dea_status solve_steps(struct dea_context *ctx, const struct search *a, c
 static dea_status solve_to(struct dea_context *ctx, struct search *a, const double *goal,
                            double least, bool *stays)
 {
-  start_here(a);
+  keep_state(a, &a->start);
   a->s->found.predicts_tangent = true; // the first linear step is kept
   a->s->found.extrapolated = false;
   dea_status ended = solve_steps(ctx, a, goal, least, a->report);
@@ -463,7 +458,7 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, dea_statu
   *there = *ended == DEA_OK && stays && a->report->unstable_modes == 0;
   if (*there) {
     a->report->snapped |= before.snapped;
-    start_here(a);
+    keep_state(a, &a->start);
     return report_point(ctx, a, DEA_STOP_UNKNOWN);
   }
   dea_solid_restore_state(a->s, &a->start);
@@ -528,8 +523,7 @@ static dea_status close_in(struct dea_context *ctx, struct search *a)
     return dea_fail(ctx, last, "%s", why);
   }
   *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), 0, 0};
-  dea_solid_state_get(a->s, a->limit.state);
-  dea_solid_controls_get(a->s, a->limit.controls);
+  keep_state(a, &a->limit);
   return report_point(ctx, a, DEA_STOP_NEAR);
 }
 

@@ -140,15 +140,12 @@ static double step_along(const struct work *w, const double *v)
 {
   static const double share = 0.02;
   const struct dea_solid *s = w->solid;
-  double thinnest_m = INFINITY, largest = 0;
+  double thinnest_m = INFINITY;
   for (size_t e = 0; e < s->problem.grid->element_count; e++) {
     const struct dea_part_material *film = dea_solid_part_material(s, e);
     thinnest_m = film->permittivity_F_per_m > 0 ? fmin(thinnest_m, film->thickness_m) : thinnest_m;
   }
-  for (size_t i = 0; i < s->problem.dofs; i++) {
-    largest = fmax(largest, fabs(v[i]));
-  }
-  return share * thinnest_m / largest;
+  return share * thinnest_m / dea_largest(s->problem.dofs, v);
 }
 
 /* Their pressures. */

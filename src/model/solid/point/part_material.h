@@ -115,5 +115,15 @@ static inline double dea_dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* Largest size of a component. */
+static inline double dea_largest(size_t count, const double *v)
+{
+  double largest = 0;
+  for (size_t i = 0; i < count; i++) {
+    largest = fmax(largest, fabs(v[i]));
+  }
+  return largest;
+}
+
 /* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
 double dea_cofactors(const double F[9], double cof[9]);

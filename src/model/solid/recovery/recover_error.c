@@ -132,10 +132,7 @@ static dea_status get_dual(struct work *w, const struct dea_recover_input *in, s
 static double move(struct work *w, const double *z)
 {
   const size_t count = 3 * w->in->grid->node_count;
-  double largest = 0;
-  for (size_t i = 0; i < count; i++) {
-    largest = fmax(largest, fabs(z[i]));
-  }
+  const double largest = dea_largest(count, z);
   const double step = largest > 0 ? 1e-9 / largest : 1;
   for (size_t i = 0; i < count; i++) {
     w->moved[i] = w->in->u[i] + step * z[i];
