@@ -35,7 +35,7 @@ static void shell_fill(struct shell *shell, int (*held)(const void *self, const 
   shell->memory.ctx = ctx;
   verify_ok(ctx, dea_surface_create(ctx, shell->grid, DEA_FACE_BOTTOM, NULL, NULL, &shell->memory,
                                     &inside));
-  verify_ok(ctx, dea_pressure_create(ctx, inside, origin, &shell->memory, &shell->pressure));
+  verify_ok(ctx, dea_pressure_create(ctx, inside, origin, false, &shell->memory, &shell->pressure));
   const struct dea_solid_load load = dea_pressure_load(shell->pressure);
   verify_ok(ctx, dea_solid_add_load(ctx, shell->solid, &load));
 }

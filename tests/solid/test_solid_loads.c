@@ -137,6 +137,7 @@ TEST(test_derivatives_of_enclosed_volumes)
   static const struct dea_enclosed enclosed[] = {
       {.volume_m3 = 20, .ambient_Pa = 2},
       {.liquid = true, .volume_m3 = 1e-3, .stiffness_Pa_per_m3 = 5}};
+  static const double level[3] = {0, 0, 0.2};
   const double d = 1e-6;
   block_create(2, 2, 0.1);
   const size_t count = 3 * grid->node_count;
@@ -150,7 +151,7 @@ TEST(test_derivatives_of_enclosed_volumes)
     struct dea_surface *surface = side_create(k < 2 ? DEA_FACE_TOP : DEA_FACE_BOTTOM);
     struct dea_pressure *pressure;
     double slope = 0, largest = 0;
-    assert_int_equal(dea_pressure_create_flat(ctx, surface, 0.2, &memory, &pressure), DEA_OK);
+    assert_int_equal(dea_pressure_create(ctx, surface, level, true, &memory, &pressure), DEA_OK);
     dea_pressure_enclose(pressure, &enclosed[k % 2]);
     dea_pressure_set(pressure, 0.3);
     struct dea_solid_load load = dea_pressure_load(pressure);
@@ -181,18 +182,19 @@ TEST(test_derivatives_of_enclosed_volumes)
 
 TEST(test_derivatives)
 {
-  static const double origin[3] = {0.1, -0.2, 0.3};
+  static const double origin[3] = {0.1, -0.2, 0.3}, level[3] = {0, 0, 0.2};
   for (int order = 1; order <= 3; order++) {
     block_create(order, order < 3 ? 2 : 1, 0.1);
     for (int side = DEA_FACE_FIRST_LOW; side <= DEA_FACE_TOP; side++) {
       struct dea_surface *surface = side_create((enum dea_face)side);
       struct dea_pressure *pressure;
-      assert_int_equal(dea_pressure_create(ctx, surface, origin, &memory, &pressure), DEA_OK);
+      assert_int_equal(dea_pressure_create(ctx, surface, origin, false, &memory, &pressure),
+                       DEA_OK);
       dea_pressure_set(pressure, 3);
       struct dea_solid_load load = dea_pressure_load(pressure);
       set_parameters(&load);
       check_derivatives(&load);
-      assert_int_equal(dea_pressure_create_flat(ctx, surface, 0.2, &memory, &pressure), DEA_OK);
+      assert_int_equal(dea_pressure_create(ctx, surface, level, true, &memory, &pressure), DEA_OK);
       dea_pressure_set(pressure, 3);
       load = dea_pressure_load(pressure);
       set_parameters(&load);

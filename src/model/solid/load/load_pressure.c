@@ -19,23 +19,15 @@ struct dea_pressure {
 };
 
 dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface *surface,
-                               const double origin_m[3], struct dea_arena *memory,
+                               const double origin_m[3], bool flat, struct dea_arena *memory,
                                struct dea_pressure **out)
 {
   *out = dea_arena_alloc(memory, 1, sizeof **out);
   DEA_TRY(ctx, dea_arena_status(memory));
   (*out)->surface = surface;
+  (*out)->flat = flat;
   memcpy((*out)->origin, origin_m, sizeof(*out)->origin);
   dea_face_shape_create(surface->order, DEA_FACE_GAUSS, &(*out)->shape);
-  return DEA_OK;
-}
-
-dea_status dea_pressure_create_flat(struct dea_context *ctx, const struct dea_surface *surface,
-                                    double height_m, struct dea_arena *memory,
-                                    struct dea_pressure **out)
-{
-  DEA_TRY(ctx, dea_pressure_create(ctx, surface, (double[3]){0, 0, height_m}, memory, out));
-  (*out)->flat = true;
   return DEA_OK;
 }
 

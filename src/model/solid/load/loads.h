@@ -43,16 +43,12 @@ struct dea_solid_load dea_spring_load(struct dea_spring *spring);
 
 struct dea_pressure;
 /* The boundary of the surface must be held, or stay in planes through origin_m: symmetry planes, or
- * one on which it slides. At first 0 Pa. */
+ * one on which it slides. At first 0 Pa. flat: it is a part of a flat face at rest, at the height
+ * of the origin, whose boundary is free to move: its forces along z are exact, and those in the
+ * plane but for p times what the boundary has risen, per length of it. */
 dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface *surface,
-                               const double origin_m[3], struct dea_arena *memory,
+                               const double origin_m[3], bool flat, struct dea_arena *memory,
                                struct dea_pressure **out);
-/* On a part of a flat face at z = height_m at rest, whose boundary is free to move: its forces
- * along z are exact, and those in the plane but for p times what the boundary has risen, per length
- * of it. */
-dea_status dea_pressure_create_flat(struct dea_context *ctx, const struct dea_surface *surface,
-                                    double height_m, struct dea_arena *memory,
-                                    struct dea_pressure **out);
 /* The surface closes a volume V in, V0 while the surface is flat. Gas has there the pressure p0
  * over pa, which is outside, and elsewhere (p0 + pa) V0/V - pa; p0 is what dea_pressure_set sets. A
  * liquid has whatever pressure keeps V - V0 at what dea_pressure_set sets [m^3]; in the iterations

@@ -238,9 +238,9 @@ static dea_status add_pressure(struct dea_context *ctx, struct dea_model *model,
     return DEA_OK;
   }
   DEA_TRY(ctx, create_face(ctx, model, pressure->region, pressure->ply, pressure->top, &surface));
-  double height_m = model->mesh.grid->X[3 * surface->nodes[0] + 2];
+  const double on_it_m[3] = {0, 0, model->mesh.grid->X[3 * surface->nodes[0] + 2]};
   DEA_TRY(ctx,
-          dea_pressure_create_flat(ctx, surface, height_m, &model->memory, &model->pressures[i]));
+          dea_pressure_create(ctx, surface, on_it_m, true, &model->memory, &model->pressures[i]));
   enclose(model, i, dea_surface_area(surface));
   const struct dea_solid_load load = dea_pressure_load(model->pressures[i]);
   return DEA_CHAIN(ctx, dea_solid_add_load(ctx, model->solid, &load));
