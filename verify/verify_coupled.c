@@ -148,7 +148,7 @@ static void compute(enum dea_solid_field_kind field, struct cut *out)
   out->first = plies[0].thickness_m / h_m;
   size_t tip = dea_grid_nearest(grid, at);
   verify_ok(ctx, dea_load_steps_solve(ctx, solid, 0, &report));
-  verify_ok(ctx, dea_solid_capacitance(ctx, solid, &out->capacitance));
+  verify_ok(ctx, dea_solid_capacitance(ctx, solid, false, &out->capacitance));
   out->capacitance /= epsilon * a_m; // the cut is h wide
   out->unknowns = 3 * grid->node_count;
   for (int i = 0; i < voltages_of(through); i++) {

@@ -185,7 +185,7 @@ static struct answer disc_answer(struct dea_grid *grid, int electrode_region)
   verify_absolute("the electrode's edge", grid->X[3 * node], a_m, 1e-9);
   answer.strain = dea_solid_displacement(solid)[3 * node] / a_m;
   answer.energy_J = report.energy_J;
-  verify_ok(states_ctx, dea_solid_capacitance(states_ctx, solid, &answer.capacitance_F));
+  verify_ok(states_ctx, dea_solid_capacitance(states_ctx, solid, false, &answer.capacitance_F));
   dea_solid_destroy(states_ctx, solid);
   dea_grid_destroy(states_ctx, grid);
   return answer;

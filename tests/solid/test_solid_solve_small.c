@@ -86,7 +86,7 @@ static void check_capacity(int order)
   assert_int_equal(dea_load_steps_solve(ctx, solid, V, &report), DEA_OK);
   assert_int_equal(report.unstable_modes, 0);
   double found;
-  assert_int_equal(dea_solid_capacitance(ctx, solid, &found), DEA_OK);
+  assert_int_equal(dea_solid_capacitance(ctx, solid, false, &found), DEA_OK);
   assert_close(rest.energy_J - report.energy_J, 0.5 * found * V * V, 1e-3, 0);
   double radius = a_m + 0.5e-3 / ((order + 1) * (order + 1));
   double capacity = epsilon * 0.25 * acos(-1) * radius * radius / h_m;

@@ -308,14 +308,11 @@ static double squares_about(const struct dea_solid *s, bool of_slopes, double sq
   return step;
 }
 
-/* potential: gives a vector of unknowns those of a voltage. */
-static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s, bool of_slopes,
-                                   dea_status (*potential)(struct dea_context *, struct dea_solid *,
-                                                           double voltage_V, double *u),
-                                   double *capacitance_F)
+dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s, bool smooth,
+                                 double *capacitance_F)
 {
   const struct dea_solid_problem *p = &s->problem;
-  double energy[2] = {0, 0}, squares[2], step = squares_about(s, of_slopes, squares);
+  double energy[2] = {0, 0}, squares[2], step = squares_about(s, smooth, squares);
   dea_status status = DEA_OK;
   if (dea_solid_has_own_voltages(s)) {
     *capacitance_F = NAN;
@@ -323,25 +320,14 @@ static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
   }
   memcpy(s->work.trial, s->state.u, p->dofs * sizeof(double));
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
-    status = potential(ctx, s, sqrt(squares[i]), s->work.trial);
+    status = smooth ? dea_solid_scale_potential(ctx, s, sqrt(squares[i]), s->work.trial)
+                    : dea_solid_solve_potential(ctx, s, sqrt(squares[i]), s->work.trial);
     status = status == DEA_OK ? dea_solid_energy(s, s->work.trial, sqrt(squares[i]), &energy[i])
                               : status;
   }
   *capacitance_F =
       status == DEA_OK && step > 0 ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]) : NAN;
   return status;
-}
-
-dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
-                                 double *capacitance_F)
-{
-  return find_capacitance(ctx, s, false, dea_solid_solve_potential, capacitance_F);
-}
-
-dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid *s,
-                                      double *capacitance_F)
-{
-  return find_capacitance(ctx, s, true, dea_solid_scale_potential, capacitance_F);
 }
 
 /* Largest of all ranks; NAN where none knows it. */

@@ -5,8 +5,9 @@
 #include "model/solid/assembly/solid.h"
 
 /* Capacitance between the electrodes: charge over the voltage that all channels have their shares
- * of. NAN without electrodes, and where a channel has a voltage of its own (channels.h). */
-dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid,
+ * of. NAN without electrodes, and where a channel has a voltage of its own (channels.h). smooth:
+ * with less rounding, for differences. */
+dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid, bool smooth,
                                  double *capacitance_F);
 
 /* Extremes of films. Those that cannot move, in a clamp or under a rigid body, have no tension that
@@ -56,9 +57,7 @@ double dea_solid_extreme_at(const struct dea_solid *solid, const struct dea_soli
 void dea_solid_extreme_slope(const struct dea_solid *solid, const struct dea_solid_film_data *films,
                              enum dea_film_extreme which, const struct dea_film_place *place,
                              double *out, double *pressures);
-/* The capacitance with less rounding, for differences, and its slope by the unknowns, out [dofs];
- * *known: false where it is NAN. */
-dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid *solid,
-                                      double *capacitance_F);
+/* The slope of the smooth capacitance by the unknowns, out [dofs]; *known: false where it is NAN.
+ */
 dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid *solid,
                                        double *out, bool *known);

@@ -66,7 +66,7 @@ static dea_status find_film(struct dea_context *ctx, const struct dea_circuit_st
                             struct dea_circuit_film *out)
 {
   double capacitance_F = 0, conductance_S = 0, copies = d->model->copies;
-  DEA_TRY(ctx, dea_solid_capacitance(ctx, d->model->solid, &capacitance_F));
+  DEA_TRY(ctx, dea_solid_capacitance(ctx, d->model->solid, false, &capacitance_F));
   *out = (struct dea_circuit_film){.capacitance_F = copies * capacitance_F};
   if (d->leaks_evenly) {
     out->conductance_S = d->leakage_per_s * out->capacitance_F;
@@ -97,7 +97,7 @@ static void find_leakage(struct dea_circuit_step *d)
 
 static size_t channel_count(const struct dea_circuit_step *d)
 {
-  return dea_solid_channel_count(d->model->solid) + 1;
+  return d->model->solid->problem.channel_count + 1;
 }
 
 static bool any_of(const bool *flags, size_t count)

@@ -510,7 +510,7 @@ static dea_status charge_coupled(struct dea_context *ctx, const struct dea_obser
   const size_t count = o->channel_count;
   const double ratio = count > 1 ? o->mesh->layout->channels[1].ratio : 0;
   double total_F;
-  DEA_TRY(ctx, dea_solid_capacitance(ctx, solid, &total_F));
+  DEA_TRY(ctx, dea_solid_capacitance(ctx, solid, false, &total_F));
   for (size_t k = 0; k < count && ratio != 0; k++) {
     capacitance[k * count + k] = total_F / (ratio * ratio);
     charge[k] = (k == 0 ? -1 : 1) * total_F / (ratio * ratio) * voltage[1];

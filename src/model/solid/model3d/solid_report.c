@@ -70,7 +70,8 @@ dea_status dea_solid_model_report(struct dea_context *ctx, struct dea_model *mod
   const bool charged =
       dea_charge_is_held(model->solid) && dea_charge_now(model->solid).channel == 0;
   dea_status status = dea_solid_extremes(model->solid, model->plies.films, &extremes);
-  status = status == DEA_OK ? dea_solid_capacitance(ctx, model->solid, &capacitance_F) : status;
+  status =
+      status == DEA_OK ? dea_solid_capacitance(ctx, model->solid, false, &capacitance_F) : status;
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
   }

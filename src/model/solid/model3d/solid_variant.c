@@ -79,7 +79,7 @@ static dea_status film_at(struct dea_context *ctx, const struct dea_model *model
     }
   }
   if (asks(model->variant->ask, "capacitance_F")) {
-    DEA_TRY(ctx, dea_solid_capacitance_wide(ctx, model->solid, &out->capacitance_F));
+    DEA_TRY(ctx, dea_solid_capacitance(ctx, model->solid, true, &out->capacitance_F));
     out->capacitance_F *= model->copies;
   }
   return DEA_OK;

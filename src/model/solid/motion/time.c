@@ -146,7 +146,8 @@ static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t,
   double potential = 0, capacitance = 0;
   dea_status status = dea_solid_energy(s, s->state.u, s->state.voltage_V, &potential);
   if (status == DEA_OK) {
-    status = t->own ? find_charged(ctx, s, charged) : dea_solid_capacitance(ctx, s, &capacitance);
+    status =
+        t->own ? find_charged(ctx, s, charged) : dea_solid_capacitance(ctx, s, false, &capacitance);
   }
   potential -= t->variables != NULL ? dea_internal_variables_energy(t->variables) : 0;
   if (status != DEA_OK) {
