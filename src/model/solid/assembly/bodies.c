@@ -26,8 +26,8 @@ struct rotation {
 static void rotation_of(const double w[3], struct rotation *out)
 {
   enum { TERMS = 32 };
-  double s = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], inverse = 1; // (-1)^k/(2k)!
-  double power[3] = {1, 0, 0};                                     // s^k and its derivatives
+  double s = dea_dot(w, w), inverse = 1; // (-1)^k/(2k)!
+  double power[3] = {1, 0, 0};           // s^k and its derivatives
   *out = (struct rotation){.w = {w[0], w[1], w[2]}, .s = s};
   for (int k = 0; k < TERMS; k++) {
     double of_a = inverse / (2 * k + 1), of_b = of_a / (2 * k + 2);
@@ -81,7 +81,7 @@ static void curvature(const struct rotation *q, const double P[9], double H[9])
   const double *w = q->w, *a = q->a, *b = q->b;
   const double moment[3] = {P[7] - P[5], P[2] - P[6], P[3] - P[1]}; // r x g
   double trace = P[0] + P[4] + P[8], h = -q->s * trace, by[3]; // g . (w (w . r) - s r), its slopes
-  double turned = w[0] * moment[0] + w[1] * moment[1] + w[2] * moment[2]; // g . (w x r)
+  double turned = dea_dot(w, moment);                          // g . (w x r)
   for (int k = 0; k < 3; k++) {
     by[k] = -2 * w[k] * trace;
     for (int i = 0; i < 3; i++) {
@@ -189,8 +189,7 @@ static void slopes_of(const struct dea_solid *s, size_t body, size_t node, doubl
   arm_of(s, body, node, r);
   for (int i = 0; i < 3; i++) {
     for (int j = 0; j < 3; j++) {
-      const double *row = s->work.body_slope[body] + 9 * j + 3 * i;
-      B[3 * i + j] = row[0] * r[0] + row[1] * r[1] + row[2] * r[2];
+      B[3 * i + j] = dea_dot(s->work.body_slope[body] + 9 * j + 3 * i, r);
     }
   }
 }
@@ -432,7 +431,7 @@ static dea_status check_body(struct dea_context *ctx, struct dea_solid *s, size_
   for (size_t n = 0; n < p->grid->node_count; n++) {
     if (body_of(s, n) == body) {
       arm_of(s, body, n, r);
-      most = fmax(most, sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]));
+      most = fmax(most, sqrt(dea_dot(r, r)));
       followers++;
     }
   }
@@ -449,8 +448,7 @@ static dea_status check_follower(struct dea_context *ctx, const struct dea_solid
   const double *Q = p->frame != NULL && p->frame[node] != 0 ? p->frames[p->frame[node] - 1] : NULL;
   const double *v = u + 3 * node, *X = p->grid->X + 3 * node;
   for (size_t i = 0; i < 3; i++) {
-    double displacement =
-        Q != NULL ? Q[3 * i] * v[0] + Q[3 * i + 1] * v[1] + Q[3 * i + 2] * v[2] : v[i];
+    double displacement = Q != NULL ? dea_dot(Q + 3 * i, v) : v[i];
     if (p->held[3 * node + i] && fabs(displacement) > 1e-9 * length_m) {
       return dea_fail(ctx, DEA_E_ARGUMENT,
                       "the node at (%.4g, %.4g, %.4g) mm is held and follows a body that may move "
@@ -570,7 +568,7 @@ void dea_solid_body_push(struct dea_solid *solid, size_t body, const double forc
  * is the small turn on top of R: T = a 1 + b [w x] + c w w^T with c = (1 - a)/s. */
 static void moment_matrix(const struct rotation *q, double M[9])
 {
-  double T[9], c = 0, power = 1. / 6, det = 0;
+  double T[9], c = 0, power = 1. / 6;
   for (int k = 0; k < 32; k++) { // c = sum (-s)^k/(2k + 3)!
     c += power;
     power *= -q->s / ((2 * k + 4) * (2 * k + 5));
@@ -579,11 +577,7 @@ static void moment_matrix(const struct rotation *q, double M[9])
   for (int i = 0; i < 9; i++) {
     T[i] = q->b[0] * T[i] + c * q->w[i / 3] * q->w[i % 3] + (i % 4 == 0 ? q->a[0] : 0);
   }
-  for (int i = 0; i < 9; i++) { // cofactors of T over its determinant
-    int j = (i / 3 + 1) % 3, k = (i / 3 + 2) % 3, v = (i % 3 + 1) % 3, w = (i % 3 + 2) % 3;
-    M[i] = T[3 * j + v] * T[3 * k + w] - T[3 * j + w] * T[3 * k + v];
-    det += i < 3 ? T[i] * M[i] : 0;
-  }
+  const double det = dea_cofactors(T, M);
   for (int i = 0; i < 9; i++) {
     M[i] /= det;
   }
@@ -603,7 +597,7 @@ void dea_solid_body_reaction(const struct dea_solid *solid, size_t body, double 
     m[i] = b->length_m * reaction[3 + i];
   }
   for (size_t i = 0; i < 3; i++) {
-    moment_N_m[i] = M[3 * i] * m[0] + M[3 * i + 1] * m[1] + M[3 * i + 2] * m[2];
+    moment_N_m[i] = dea_dot(M + 3 * i, m);
   }
 }
 

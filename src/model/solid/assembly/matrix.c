@@ -47,8 +47,8 @@ static void turn(const double Q[9], bool back, double *v, size_t apart)
 {
   double old[3] = {v[0], v[apart], v[2 * apart]};
   for (size_t i = 0; i < 3; i++) {
-    v[apart * i] = back ? Q[i] * old[0] + Q[3 + i] * old[1] + Q[6 + i] * old[2]
-                        : Q[3 * i] * old[0] + Q[3 * i + 1] * old[1] + Q[3 * i + 2] * old[2];
+    v[apart * i] =
+        back ? Q[i] * old[0] + Q[3 + i] * old[1] + Q[6 + i] * old[2] : dea_dot(Q + 3 * i, old);
   }
 }
 
