@@ -5,69 +5,48 @@
 
 #include <math.h>
 
-/* Potentials of a coupled field [V], owned by the caller; NULL for thin films. */
-static dea_status find_potentials(struct dea_context *ctx, const struct dea_solid *s, double **out)
+/* What recovery is made of. memory: of its arrays. */
+static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s,
+                          struct dea_arena *memory, struct dea_recover_input *out)
 {
   const struct dea_solid_problem *p = &s->problem;
-  *out = NULL;
-  if (p->field == NULL) {
-    return DEA_OK;
+  const size_t nodes = p->grid->node_count, elements = p->grid->element_count;
+  const bool coupled = p->field != NULL;
+  double *across_V = dea_arena_alloc(memory, elements, sizeof *across_V);
+  double *potential_V = coupled ? dea_arena_alloc(memory, nodes, sizeof *potential_V) : NULL;
+  DEA_TRY(ctx, dea_arena_status(memory));
+  for (size_t e = 0; e < elements; e++) {
+    across_V[e] = dea_solid_voltage_across(s, e, s->state.voltage_V);
   }
-  *out = dea_alloc(ctx, p->grid->node_count, sizeof **out);
-  DEA_TRY_MEMORY(*out != NULL);
-  for (size_t n = 0; n < p->grid->node_count; n++) {
-    (*out)[n] = dea_solid_field_scale(s) * s->state.u[3 * p->grid->node_count + n];
+  for (size_t n = 0; n < nodes && coupled; n++) {
+    potential_V[n] = dea_solid_field_scale(s) * s->state.u[3 * nodes + n];
   }
+  *out = (struct dea_recover_input){.grid = p->grid,
+                                    .elements = &p->elements,
+                                    .kind = p->kind,
+                                    .part_materials = p->part_materials,
+                                    .bulk_factor = s->state.bulk_factor,
+                                    .part_material = p->part_material_of,
+                                    .active = p->active,
+                                    .u = s->state.u,
+                                    .multiplier = s->state.multiplier,
+                                    .across_V = across_V,
+                                    .potential_V = potential_V,
+                                    .uneven = s->state.drop_V != NULL};
   return DEA_OK;
-}
-
-/* What recovery is made of; filled by prepare. */
-struct recovery {
-  struct dea_recover_input in;
-  double *potential_V, *across_V;
-};
-
-static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s, struct recovery *out)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  *out =
-      (struct recovery){.across_V = dea_alloc(ctx, p->grid->element_count, sizeof *out->across_V)};
-  dea_status status =
-      out->across_V != NULL ? find_potentials(ctx, s, &out->potential_V) : DEA_E_MEMORY;
-  for (size_t e = 0; e < p->grid->element_count && status == DEA_OK; e++) {
-    out->across_V[e] = dea_solid_voltage_across(s, e, s->state.voltage_V);
-  }
-  out->in = (struct dea_recover_input){.grid = p->grid,
-                                       .elements = &p->elements,
-                                       .kind = p->kind,
-                                       .part_materials = p->part_materials,
-                                       .bulk_factor = s->state.bulk_factor,
-                                       .part_material = p->part_material_of,
-                                       .active = p->active,
-                                       .u = s->state.u,
-                                       .multiplier = s->state.multiplier,
-                                       .across_V = out->across_V,
-                                       .potential_V = out->potential_V,
-                                       .uneven = s->state.drop_V != NULL};
-  return status;
-}
-
-static void release(struct dea_context *ctx, struct recovery *recovery)
-{
-  dea_free(ctx, recovery->across_V);
-  dea_free(ctx, recovery->potential_V);
 }
 
 dea_status dea_solid_fields(struct dea_context *ctx, const struct dea_solid *s, int ply,
                             struct dea_field_mesh **out)
 {
-  struct recovery work;
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_recover_input in;
   *out = NULL;
-  dea_status status = prepare(ctx, s, &work);
+  dea_status status = prepare(ctx, s, &memory, &in);
   status = status != DEA_OK       ? status
-           : ply == DEA_ALL_PLIES ? dea_recover_volume(ctx, &work.in, out)
-                                  : dea_recover_surface(ctx, &work.in, ply, out);
-  release(ctx, &work);
+           : ply == DEA_ALL_PLIES ? dea_recover_volume(ctx, &in, out)
+                                  : dea_recover_surface(ctx, &in, ply, out);
+  dea_arena_free(&memory);
   return DEA_CHAIN(ctx, status);
 }
 
@@ -100,9 +79,10 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
   if (dea_solid_allreduce_any(!s->found.factor_fits)) {
     return DEA_OK;
   }
-  struct recovery work = {0};
-  double(*mirror)[3] = dea_alloc(ctx, p->grid->node_count, sizeof *mirror);
-  dea_status status = mirror != NULL ? prepare(ctx, s, &work) : DEA_E_MEMORY;
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_recover_input in;
+  double(*mirror)[3] = dea_arena_alloc(&memory, p->grid->node_count, sizeof *mirror);
+  dea_status status = prepare(ctx, s, &memory, &in);
   for (size_t n = 0; status == DEA_OK && n < p->grid->node_count; n++) {
     find_mirror(p, n, mirror[n]);
   }
@@ -111,10 +91,8 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
     status = dea_solid_solve_linear(ctx, s, of[k].z, of[k].z);
   }
   if (status == DEA_OK) {
-    status =
-        dea_recover_errors(ctx, &work.in, (const double(*)[3])mirror, of, count, error_m, part);
+    status = dea_recover_errors(ctx, &in, (const double(*)[3])mirror, of, count, error_m, part);
   }
-  release(ctx, &work);
-  dea_free(ctx, mirror);
+  dea_arena_free(&memory);
   return status;
 }
