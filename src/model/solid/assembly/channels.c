@@ -51,11 +51,6 @@ dea_status dea_solid_channels_create(struct dea_context *ctx, struct dea_solid *
   return DEA_OK;
 }
 
-size_t dea_solid_channel_count(const struct dea_solid *solid)
-{
-  return solid->problem.channel_count;
-}
-
 double *dea_solid_own_voltages(struct dea_solid *solid)
 {
   return solid->state.own_goal_V;

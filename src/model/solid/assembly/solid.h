@@ -92,10 +92,8 @@ struct dea_solid_settings *dea_solid_settings_of(struct dea_solid *solid);
 /* Voltage of the last equilibrium. */
 double dea_solid_voltage(const struct dea_solid *solid);
 
-/* Channels, ground not counted; at least 1. */
-size_t dea_solid_channel_count(const struct dea_solid *solid);
-/* Own voltages [channel_count + 1] that the next solve brings the channels to, beside their shares
- * of its voltage; lent, at first 0; that of ground, [0], stays 0. */
+/* Own voltages [channels and ground] that the next solve brings the channels to, beside their
+ * shares of its voltage; lent, at first 0; that of ground, [0], stays 0. */
 double *dea_solid_own_voltages(struct dea_solid *solid);
 
 /* Displacements [node_count][3], lent; they may be written to set a start. What the options hold

@@ -10,11 +10,6 @@ const struct dea_element_type *const dea_element_types[DEA_ELEMENT_COUNT] = {
 #undef ELEMENT_ADDRESS
 };
 
-size_t dea_element_predicted_count(const struct dea_element *e)
-{
-  return (size_t)(e->pressures + 6 * e->points);
-}
-
 dea_status dea_element_set_create(struct dea_context *ctx, int order, int order_z,
                                   struct dea_element_set *out)
 {
@@ -29,7 +24,7 @@ dea_status dea_element_set_create(struct dea_context *ctx, int order, int order_
       return dea_fail(ctx, status, "elements have the orders 1 to %d, not %d and %d",
                       (int)DEA_HEX_ORDER_MAX, order, order_z);
     }
-    size_t predicted = e->type->predict != NULL ? dea_element_predicted_count(e) : 0;
+    size_t predicted = e->type->predict != NULL ? (size_t)(e->pressures + 6 * e->points) : 0;
     out->pressures = e->pressures > out->pressures ? e->pressures : out->pressures;
     out->predicted_count = predicted > out->predicted_count ? predicted : out->predicted_count;
   }

@@ -174,9 +174,6 @@ dea_status dea_element_set_create(struct dea_context *ctx, int order, int order_
                                   struct dea_element_set *out);
 void dea_element_set_release(struct dea_context *ctx, struct dea_element_set *set);
 
-/* Numbers that predict fills. */
-size_t dea_element_predicted_count(const struct dea_element *e);
-
 /* Consistent mass between nodes int rho N_a N_b [kg], the same for each component of the
  * displacement (docs/theory/vibration.md). [nodes][nodes] */
 dea_status dea_element_mass(const struct dea_element *e,
