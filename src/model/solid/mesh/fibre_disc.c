@@ -436,9 +436,10 @@ static dea_status spread(struct dea_context *ctx, const struct builder *b,
 {
   const struct dea_fibre_disc *p = b->lines.plate;
   size_t count = b->block_count * (size_t)p->sectors;
-  struct copy *copies = dea_alloc(ctx, count, sizeof *copies);
-  struct dea_block *blocks = dea_alloc(ctx, count, sizeof *blocks);
-  dea_status status = copies != NULL && blocks != NULL ? DEA_OK : DEA_E_MEMORY;
+  struct dea_arena memory = {.ctx = ctx};
+  struct copy *copies = dea_arena_alloc(&memory, count, sizeof *copies);
+  struct dea_block *blocks = dea_arena_alloc(&memory, count, sizeof *blocks);
+  dea_status status = dea_arena_status(&memory);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     size_t sector = i / b->block_count;
     bool mirrored = sector % 2 == 1;
@@ -448,8 +449,7 @@ static dea_status spread(struct dea_context *ctx, const struct builder *b,
   }
   status = status == DEA_OK ? dea_blocks_mesh(ctx, p->order, blocks, count, p->frame_radius, out)
                             : status;
-  dea_free(ctx, blocks);
-  dea_free(ctx, copies);
+  dea_arena_free(&memory);
   return status;
 }
 

@@ -53,16 +53,17 @@ struct modes {
 };
 
 /* Added masses of the modes [MODES][dofs]. */
-static dea_status find_air(struct dea_context *ctx, const struct dea_model *model,
-                           const double *vector, size_t dofs, double out[MODES * MODES])
+static dea_status find_air(struct dea_context *ctx, struct work *w, const double *vector,
+                           size_t dofs, double out[MODES * MODES])
 {
   enum { CELLS = 3000 };
   static_assert((int)MODES <= (int)DEA_AIR_SHAPES_MAX, "room");
+  const struct dea_model *model = w->model;
   struct dea_field_mesh *surface, *moved;
   DEA_TRY(ctx, dea_solid_fields(ctx, model->solid, (int)model->plies.film, &surface));
   const size_t size = 3 * surface->point_count;
-  double *shapes = dea_solid_alloc(ctx, MODES * size, sizeof *shapes);
-  dea_status status = shapes == NULL ? DEA_E_MEMORY : DEA_OK;
+  double *shapes = dea_arena_alloc(&w->memory, MODES * size, sizeof *shapes);
+  dea_status status = dea_solid_allreduce(ctx, dea_arena_status(&w->memory));
   for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
     status = dea_solid_model_surface(ctx, model, vector + k * dofs, &moved);
     if (status == DEA_OK) {
@@ -74,7 +75,6 @@ static dea_status find_air(struct dea_context *ctx, const struct dea_model *mode
   status = status == DEA_OK
                ? dea_air_mass(ctx, surface, &model->mesh.sector, CELLS, shapes, MODES, out)
                : status;
-  dea_free(ctx, shapes);
   dea_field_mesh_destroy(ctx, surface);
   return DEA_CHAIN(ctx, status);
 }
@@ -128,7 +128,7 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea
     modes.by_rate[k] = -dea_solid_dot(w->solid, mode, w->rate) / omega;
   }
   if (density > 0) {
-    DEA_TRY(ctx, find_air(ctx, w->model, vector, dofs, mass));
+    DEA_TRY(ctx, find_air(ctx, w, vector, dofs, mass));
     DEA_TRY(ctx, add_air(ctx, mass, density, &modes));
   }
   for (size_t k = 0; k < MODES; k++) {

@@ -141,13 +141,14 @@ static double move(struct work *w, const double *z)
 }
 
 /* All elements, at u and moved by each z. */
-static dea_status get_all(struct work *w, const struct dea_recover_quantity *of,
-                          struct dea_element_state *at)
+static dea_status get_all(struct work *w, const struct dea_recover_quantity *of)
 {
   const size_t elements = w->in->grid->element_count;
   struct dea_recover_input in = *w->in;
   dea_status status = DEA_OK;
   size_t e = 0;
+  struct dea_element_state *at = dea_arena_alloc(&w->memory, 1, sizeof *at);
+  DEA_TRY(w->ctx, dea_arena_status(&w->memory));
   for (; status == DEA_OK && e < elements; e++) {
     status = get_state(w, e, at);
   }
@@ -334,9 +335,9 @@ static void estimate(struct work *w, const struct dea_recover_quantity *of, doub
 
 /* Values of all elements at u and moved by each z, and what follows from them. */
 static dea_status gather(struct work *w, const struct dea_recover_quantity *of,
-                         const double (*mirror)[3], struct dea_element_state *at)
+                         const double (*mirror)[3])
 {
-  DEA_TRY(w->ctx, get_all(w, of, at));
+  DEA_TRY(w->ctx, get_all(w, of));
   fit_all(w);
   if (w->in->grid->order == 2) {
     const struct dea_recover_second second = {.grid = w->in->grid,
@@ -357,13 +358,11 @@ dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_
                               size_t count, double *error, double *part)
 {
   struct work w = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in, .count = count};
-  struct dea_element_state *at = dea_alloc(ctx, 1, sizeof *at);
-  dea_status status = at != NULL ? prepare(&w) : DEA_E_MEMORY;
-  status = status == DEA_OK ? gather(&w, of, mirror, at) : status;
+  dea_status status = prepare(&w);
+  status = status == DEA_OK ? gather(&w, of, mirror) : status;
   if (status == DEA_OK) {
     estimate(&w, of, error, part);
   }
-  dea_free(ctx, at);
   dea_arena_free(&w.memory);
   return status;
 }

@@ -39,11 +39,11 @@ static int by_place(const void *a, const void *b)
   return (p->z > q->z) - (p->z < q->z);
 }
 
-struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_recover_input *in)
+struct dea_stacked *dea_recover_stack(struct dea_arena *memory, const struct dea_recover_input *in)
 {
   const struct dea_grid *grid = in->grid;
   int plane_nodes = (grid->order + 1) * (grid->order + 1);
-  struct dea_stacked *stack = dea_alloc(ctx, grid->element_count, sizeof *stack);
+  struct dea_stacked *stack = dea_arena_alloc(memory, grid->element_count, sizeof *stack);
   for (size_t e = 0; stack != NULL && e < grid->element_count; e++) {
     stack[e].element = e;
     stack[e].ply = grid->ply[e];

@@ -10,8 +10,8 @@ struct dea_stacked {
   int ply;
   size_t element;
 };
-/* [element_count], owned by the caller; NULL for want of memory. */
-struct dea_stacked *dea_recover_stack(struct dea_context *ctx, const struct dea_recover_input *in);
+/* [element_count]; NULL for want of memory. */
+struct dea_stacked *dea_recover_stack(struct dea_arena *memory, const struct dea_recover_input *in);
 /* First element after `from` of another column, or of another ply with by_ply. */
 size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, size_t from,
                               bool by_ply);

@@ -10,7 +10,7 @@ enum { SUMS = 21, FIELD = 12, HEIGHT = 13, FORCE = 14, VOLTAGE = 20, GROUPS = 4 
 
 struct work {
   struct dea_context *ctx;
-  struct dea_arena memory; // of all arrays but the stack
+  struct dea_arena memory; // of all arrays
   const struct dea_recover_input *in;
   int ply;
   struct dea_stacked *stack;
@@ -30,7 +30,7 @@ static dea_status prepare(struct work *w)
   const struct dea_grid *grid = w->in->grid;
   size_t per = (size_t)((grid->order + 1) * (grid->order + 1)), count = grid->element_count;
   struct dea_arena *memory = &w->memory;
-  w->stack = dea_recover_stack(w->ctx, w->in);
+  w->stack = dea_recover_stack(memory, w->in);
   w->at = dea_arena_alloc(memory, 1, sizeof *w->at);
   w->point = dea_arena_alloc(memory, GROUPS * grid->node_count, sizeof *w->point);
   w->nodes = dea_arena_alloc(memory, count * per, sizeof *w->nodes);
@@ -39,7 +39,7 @@ static dea_status prepare(struct work *w)
   w->node = dea_arena_alloc(memory, count * per, sizeof *w->node);
   w->sum = dea_arena_alloc(memory, count * per, sizeof *w->sum);
   w->weight = dea_arena_alloc(memory, count * per, sizeof *w->weight);
-  return w->stack != NULL ? dea_arena_status(memory) : DEA_E_MEMORY;
+  return dea_arena_status(memory);
 }
 
 /* Numbers the points of a column. Those of its bottom nodes stand for it in its group. */
@@ -248,7 +248,6 @@ dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover
   status = status == DEA_OK ? add_columns(&work) : status;
   status = status == DEA_OK ? dea_field_mesh_create(ctx, work.point_count, out) : status;
   status = status == DEA_OK ? fill_mesh(&work, *out) : status;
-  dea_free(ctx, work.stack);
   dea_arena_free(&work.memory);
   return dea_field_mesh_finish(ctx, status, out);
 }

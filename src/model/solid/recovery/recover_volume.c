@@ -10,7 +10,7 @@ enum { SUMS = 23, FORCE = 17 }; // F 9, stress 6, energy, field, membrane force 
 /* Points while sums are taken. */
 struct work {
   struct dea_context *ctx;
-  struct dea_arena memory; // of all arrays but the stack
+  struct dea_arena memory; // of all arrays
   const struct dea_recover_input *in;
   struct dea_stacked *stack;
   struct dea_recover_points points;
@@ -65,13 +65,13 @@ static dea_status get_means(struct work *w)
 {
   size_t count = w->in->grid->element_count;
   DEA_TRY(w->ctx, dea_recover_number(&w->memory, w->in->grid, &w->points));
-  w->stack = dea_recover_stack(w->ctx, w->in);
+  w->stack = dea_recover_stack(&w->memory, w->in);
   w->at = dea_arena_alloc(&w->memory, 1, sizeof *w->at);
   w->sum = dea_arena_alloc(&w->memory, w->points.count, sizeof *w->sum);
   w->weight = dea_arena_alloc(&w->memory, w->points.count, sizeof *w->weight);
   w->volume = dea_arena_alloc(&w->memory, count, sizeof *w->volume);
   w->error = dea_arena_alloc(&w->memory, count, sizeof *w->error);
-  DEA_TRY(w->ctx, w->stack != NULL ? dea_arena_status(&w->memory) : DEA_E_MEMORY);
+  DEA_TRY(w->ctx, dea_arena_status(&w->memory));
   for (size_t from = 0; from < count;) {
     size_t end = dea_recover_column_end(w->stack, count, from, true);
     DEA_TRY(w->ctx, add_column(w, from, end));
@@ -239,7 +239,6 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
   dea_status status = get_means(&work);
   status = status == DEA_OK ? dea_field_mesh_create(ctx, work.points.count, out) : status;
   status = status == DEA_OK ? fill_mesh(&work, *out) : status;
-  dea_free(ctx, work.stack);
   dea_arena_free(&work.memory);
   return dea_field_mesh_finish(ctx, status, out);
 }
