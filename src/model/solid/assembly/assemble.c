@@ -367,9 +367,7 @@ static dea_status collect(struct dea_context *ctx, struct dea_solid *s, enum dea
   DEA_TRY(ctx, move_to_bodies(ctx, s, level));
   memcpy(s->found.reaction, s->work.g, p->dofs * sizeof(double));
   dea_solid_release_held(s, s->work.g);
-  for (size_t i = 0; i < p->dofs; i++) {
-    s->found.reaction[i] -= s->work.g[i];
-  }
+  dea_add(p->dofs, -1, s->work.g, s->found.reaction);
   return DEA_OK;
 }
 

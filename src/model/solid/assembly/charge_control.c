@@ -115,9 +115,7 @@ static double whole(const void *self, const double *u, double *slope)
     memset(c->scratch, 0, c->solid->problem.dofs * sizeof *c->scratch);
     add_slope(c, u, c->scratch);
     dea_solid_sum(c->scratch, c->solid->problem.dofs);
-    for (size_t i = 0; i < c->solid->problem.dofs; i++) {
-      slope[i] += c->scratch[i];
-    }
+    dea_add(c->solid->problem.dofs, 1, c->scratch, slope);
   }
   return c->held ? 1 / c->capacitance_F : 0;
 }

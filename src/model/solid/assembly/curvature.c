@@ -119,9 +119,7 @@ dea_status dea_solid_motion(struct dea_context *ctx, struct dea_solid *s, double
   DEA_TRY(ctx, dea_solid_allreduce(ctx, status));
   dea_solid_sum(sums, 2);
   dea_solid_sum(s->work.g, p->body_count > 0 ? p->dofs : 0);
-  for (size_t i = 0; i < p->dofs; i++) {
-    s->work.g[i] -= s->state.force[i];
-  }
+  dea_add(p->dofs, -1, s->state.force, s->work.g);
   for (size_t i = 0; i < 3 * p->grid->node_count && p->point_mass != NULL; i++) {
     sums[1] += p->point_mass[i / 3] * v[i] * v[i];
   }

@@ -483,9 +483,7 @@ static dea_status add_forces(struct dea_context *ctx, struct dea_solid *s, doubl
   double energy;
   DEA_TRY(ctx, dea_solid_scale_potential(ctx, s, voltage_V, s->state.u));
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, &energy));
-  for (size_t k = 0; k < 3 * s->problem.grid->node_count; k++) {
-    out[k] += times * s->work.g[k];
-  }
+  dea_add(3 * s->problem.grid->node_count, times, s->work.g, out);
   return DEA_OK;
 }
 

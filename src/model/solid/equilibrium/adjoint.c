@@ -174,9 +174,7 @@ static void get_pressures(struct dea_adjoint *a, size_t number)
   }
   dea_constraints_solve(&a->constraints, false, sum);
   dea_solid_sum(sum, a->pressures);
-  for (size_t i = 0; i < a->pressures; i++) {
-    a->left[i] -= sum[i];
-  }
+  dea_add(a->pressures, -1, sum, a->left);
   for (size_t i = a->pressures; i < a->all; i++) {
     const double root = a->row[i - a->pressures].root;
     a->left[i] -= root > 0 ? pull[i] / root : 0;
@@ -212,9 +210,7 @@ static void step(struct dea_adjoint *a, double size, double *lambda, double *nu,
     a->left[i] -= length * a->gain[i];
     *most = fmax(*most, fabs(nu[i]));
   }
-  for (size_t i = 0; i < a->dofs; i++) {
-    lambda[i] -= length * a->conjugate[i];
-  }
+  dea_add(a->dofs, -length, a->conjugate, lambda);
 }
 
 /* A takes its share of nu from K. */

@@ -97,9 +97,7 @@ static dea_status set_controls(struct dea_context *ctx, struct dea_solid_continu
   t->load = tau;
   dea_solid_controls_set(s, t->now);
   if (dea_solid_controls_increment(s, t->now)) {
-    for (size_t i = 0; i < s->problem.dofs; i++) {
-      s->state.u[i] += s->work.increment[i];
-    }
+    dea_add(s->problem.dofs, 1, s->work.increment, s->state.u);
   }
   return DEA_OK;
 }
@@ -167,9 +165,7 @@ static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuat
 static dea_status displacement_rate(struct dea_context *ctx, struct dea_solid_continuation *t)
 {
   DEA_TRY(ctx, dea_solid_solve_linear(ctx, t->s, t->right, t->rate));
-  for (size_t i = 0; i < t->s->problem.dofs; i++) {
-    t->rate[i] += t->held_rate[i];
-  }
+  dea_add(t->s->problem.dofs, 1, t->held_rate, t->rate);
   dea_solid_bodies_transfer(t->s, t->rate); // those of held_rate belong to where the path began
   return DEA_OK;
 }
@@ -203,9 +199,7 @@ static dea_status bordered_step(struct dea_context *ctx, struct dea_solid_contin
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path does not cross the plane");
   }
   *dtau = -off / along;
-  for (size_t i = 0; i < p->dofs; i++) {
-    s->work.step[i] += *dtau * t->rate[i];
-  }
+  dea_add(p->dofs, *dtau, t->rate, s->work.step);
   return DEA_OK;
 }
 
@@ -365,9 +359,7 @@ static dea_status predict_from(struct dea_context *ctx, struct dea_solid_continu
   dea_status status = dea_solid_predict(ctx, s, s->state.voltage_V, du, 1, true, true);
   s->state.bulk_factor /= DEA_SOLID_STIFF; // the multipliers are those of the end of the step
   DEA_TRY(ctx, status);
-  for (size_t i = 0; i < s->problem.dofs; i++) {
-    s->state.u[i] += du[i];
-  }
+  dea_add(s->problem.dofs, 1, du, s->state.u);
   return DEA_CHAIN(ctx, set_load(ctx, t, t->load + dtau));
 }
 

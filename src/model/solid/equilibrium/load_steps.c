@@ -25,9 +25,7 @@ static double energy_beside(struct dea_context *ctx, struct dea_solid *s, const 
 {
   double energy;
   memcpy(s->work.trial, u, s->problem.dofs * sizeof *s->work.trial);
-  for (size_t i = 0; i < 3 * s->problem.grid->node_count; i++) {
-    s->work.trial[i] += size * mode[i];
-  }
+  dea_add(3 * s->problem.grid->node_count, size, mode, s->work.trial);
   return dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->work.trial) == DEA_OK &&
                  dea_solid_energy(s, s->work.trial, s->state.voltage_V, &energy) == DEA_OK
              ? energy
@@ -134,9 +132,7 @@ static dea_status solve_pushed(struct dea_context *ctx, struct dea_solid *s, con
   memset(s->work.step, 0, p->dofs * sizeof *s->work.step);
   memcpy(s->work.step, push_m, 3 * p->grid->node_count * sizeof *s->work.step);
   dea_solid_release_held(s, s->work.step);
-  for (size_t i = 0; i < p->dofs; i++) {
-    s->state.u[i] += s->work.step[i];
-  }
+  dea_add(p->dofs, 1, s->work.step, s->state.u);
   s->found.factor_fits = false;
   *report = (struct dea_solid_report){.load_factor = 1};
   return DEA_CHAIN(ctx, dea_solid_equilibrate(ctx, s, report));

@@ -258,9 +258,7 @@ static void add_pressures(struct follow *w)
   dea_constraints_push(&w->constraints, w->nu, sum);
   dea_solid_bodies_collect(s, sum);
   dea_solid_release_held(s, sum);
-  for (size_t i = 0; i < w->dofs; i++) {
-    w->h[i] += sum[i];
-  }
+  dea_add(w->dofs, 1, sum, w->h);
 }
 
 /* dq = kappa (theta + L^-T b du) into f. */

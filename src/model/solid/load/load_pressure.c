@@ -113,9 +113,7 @@ static double volume_of(const struct dea_pressure *p, size_t piece, const double
   memset(out.g, 0, sizeof out.g);
   dea_face_gather(p->surface, piece, p->surface->grid->X, X);
   dea_face_gather(p->surface, piece, u, x);
-  for (int i = 0; i < 3 * s->nodes; i++) {
-    x[i] += X[i];
-  }
+  dea_add(3 * (size_t)s->nodes, 1, X, x);
   out.energy_J = 0;
   for (int q = 0; q < s->points; q++) {
     struct place at;
@@ -250,9 +248,7 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
          (size_t)s->nodes * sizeof *out->nodes);
   dea_face_gather(p->surface, piece, p->surface->grid->X, X);
   dea_face_gather(p->surface, piece, u, x);
-  for (int i = 0; i < dofs; i++) {
-    x[i] += X[i];
-  }
+  dea_add((size_t)dofs, 1, X, x);
   out->energy_J = 0;
   memset(out->g, 0, (size_t)dofs * sizeof *out->g);
   memset(out->K, 0, level >= DEA_TANGENT ? (size_t)(dofs * dofs) * sizeof *out->K : 0);

@@ -139,9 +139,7 @@ static void add_products(const struct work *w, size_t i, const struct dea_layout
       const struct cell *from = &w->cells[j];
       const double d[3] = {x[0] - from->x[0], x[1] - from->x[1], to->x[2] - from->x[2]};
       const double by = c == 0 && i == j ? from->own : 1 / sqrt(dea_dot(d, d));
-      for (size_t k = 0; k < w->count; k++) {
-        potential[k] += by * from->flux[k];
-      }
+      dea_add(w->count, by, from->flux, potential);
     }
   }
   for (size_t k = 0; k < w->count * w->count; k++) {

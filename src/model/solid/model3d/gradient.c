@@ -207,9 +207,7 @@ static dea_status add_along(struct dea_context *ctx, struct work *w, const struc
       continue;
     }
     DEA_TRY(ctx, assemble_along(ctx, w, line, w->voltage_V, k - middle));
-    for (size_t i = 0; i < s->problem.dofs; i++) {
-      out[i] += times * s->work.g[i];
-    }
+    dea_add(s->problem.dofs, times, s->work.g, out);
     dea_adjoint_add_constraints(w->adjoint, times, pressures);
   }
   return DEA_OK;
@@ -392,9 +390,7 @@ static dea_status share_border(struct dea_context *ctx, struct work *w)
     double *slope = dea_adjoint_slope(w->adjoint, i);
     b->by_voltage[i] = (b->by_voltage[width + i] - b->by_voltage[i]) / (2 * by_V);
     b->pull[i] = (dea_adjoint_pair(w->adjoint, width, i) - b->by_voltage[i]) / b->along;
-    for (size_t k = 0; k < s->problem.dofs; k++) {
-      slope[k] -= b->pull[i] * b->slope[k];
-    }
+    dea_add(s->problem.dofs, -b->pull[i], b->slope, slope);
   }
   return DEA_OK;
 }

@@ -217,9 +217,7 @@ static void move_held(struct dea_model_variant *v)
   }
   dea_solid_frame_vector(s, true, v->shift);
   memcpy(v->u, s->state.u, dofs * sizeof *v->u);
-  for (size_t i = 0; i < dofs; i++) {
-    s->state.u[i] += v->shift[i];
-  }
+  dea_add(dofs, 1, v->shift, s->state.u);
   v->is_moved = true;
 }
 

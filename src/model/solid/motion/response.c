@@ -34,9 +34,7 @@ static dea_status purge(struct dea_context *ctx, const struct dea_solid *s,
     for (size_t i = 0; i < r->dofs; i++) {
       amount += phi[i] * work[i];
     }
-    for (size_t i = 0; i < r->dofs; i++) {
-      v[i] -= amount * phi[i];
-    }
+    dea_add(r->dofs, -amount, phi, v);
   }
   return DEA_OK;
 }

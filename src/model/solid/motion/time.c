@@ -74,9 +74,7 @@ static void constrain_forces(struct dea_solid_time *t, const double *taken, doub
   }
   dea_solid_bodies_prepare(s);
   dea_solid_bodies_collect(s, t->work);
-  for (size_t i = 0; i < t->count; i++) {
-    F[i] += t->work[i];
-  }
+  dea_add(t->count, 1, t->work, F);
 }
 
 /* The same at the end of a step that was tried. */

@@ -11,6 +11,7 @@
 #include "base/context.h"
 #include "material/material.h"
 #include "material/point.h"
+#include "model/solid/point/vectors.h"
 
 #include <math.h>
 
@@ -101,29 +102,6 @@ void dea_part_material_second_stress(const double cof[9], double J, const double
  * place of F^-1 P in its geometric part. P stays. */
 void dea_part_material_restress(const double F[9], const double cof[9], double J, double pressure,
                                 const double S[6], struct dea_point *point);
-
-/* a x b; out is neither of them. */
-static inline void dea_cross(const double a[3], const double b[3], double out[3])
-{
-  out[0] = a[1] * b[2] - a[2] * b[1];
-  out[1] = a[2] * b[0] - a[0] * b[2];
-  out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static inline double dea_dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Largest size of a component. */
-static inline double dea_largest(size_t count, const double *v)
-{
-  double largest = 0;
-  for (size_t i = 0; i < count; i++) {
-    largest = fmax(largest, fabs(v[i]));
-  }
-  return largest;
-}
 
 /* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
 double dea_cofactors(const double F[9], double cof[9]);
