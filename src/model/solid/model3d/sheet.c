@@ -529,17 +529,10 @@ dea_status dea_sheet_solve(struct dea_context *ctx, struct dea_sheet *sheet, boo
   return DEA_OK;
 }
 
-static void swap(double **a, double **b)
-{
-  double *first = *a;
-  *a = *b;
-  *b = first;
-}
-
 void dea_sheet_accept(struct dea_sheet *sheet)
 {
-  swap(&sheet->charge_C, &sheet->charge_next_C);
-  swap(&sheet->capacitance_F[0], &sheet->capacitance_F[1]);
+  dea_swap(&sheet->charge_C, &sheet->charge_next_C);
+  dea_swap(&sheet->capacitance_F[0], &sheet->capacitance_F[1]);
   memcpy(sheet->channel_V[0], sheet->channel_V[1], sheet->channels * sizeof(double));
   memcpy(sheet->u, sheet->solid->state.u, 3 * sheet->mesh->grid->node_count * sizeof *sheet->u);
 }

@@ -498,21 +498,14 @@ dea_status dea_solid_time_close(struct dea_context *ctx, struct dea_solid_time *
   return DEA_OK;
 }
 
-static void swap_arrays(double **a, double **b)
-{
-  double *first = *a;
-  *a = *b;
-  *b = first;
-}
-
 void dea_solid_time_accept(struct dea_solid_time *t)
 {
   if (t->variables != NULL) {
     dea_internal_variables_accept(t->variables);
   }
-  swap_arrays(&t->F, &t->F_next);
-  swap_arrays(&t->v, &t->v_next);
-  swap_arrays(&t->a, &t->a_next);
+  dea_swap(&t->F, &t->F_next);
+  dea_swap(&t->v, &t->v_next);
+  dea_swap(&t->a, &t->a_next);
   memcpy(t->u_before, t->accepted.state, t->count * sizeof *t->u_before);
   t->step_before_s = t->step_s;
   t->sums = t->sums_next;

@@ -27,6 +27,14 @@ static inline double dea_largest(size_t count, const double *v)
   return largest;
 }
 
+/* One vector in the place of the other. */
+static inline void dea_swap(double **a, double **b)
+{
+  double *first = *a;
+  *a = *b;
+  *b = first;
+}
+
 /* to += times from. */
 static inline void dea_add(size_t count, double times, const double *from, double *to)
 {
