@@ -485,8 +485,10 @@ static void check_inverted(struct sample *s)
 TEST(test_every_kind)
 {
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
+    struct dea_arena memory = {.ctx = ctx};
     struct dea_element_set set;
-    assert_int_equal(dea_element_set_create(ctx, order, order > 2 ? 2 : order, &set), DEA_OK);
+    assert_int_equal(dea_element_set_create(ctx, order, order > 2 ? 2 : order, &memory, &set),
+                     DEA_OK);
     for (int kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
       static void (*const checks[])(struct sample * s) = {
           check_derivatives, check_rigid_motion, check_patch,  check_integrals, check_prediction,
@@ -503,7 +505,7 @@ TEST(test_every_kind)
         }
       }
     }
-    dea_element_set_release(ctx, &set);
+    dea_arena_free(&memory);
   }
 }
 

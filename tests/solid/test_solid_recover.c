@@ -31,6 +31,7 @@ static bool fibre_on_second(const void *self, int region, int ply)
 enum kind { SOLID, COUPLED, FLAT };
 
 struct strip {
+  struct dea_arena memory; // of the elements
   enum kind kind;
   struct dea_grid *grid;
   struct dea_element_set elements;
@@ -55,9 +56,10 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   struct strip *s = calloc(1, sizeof *s);
   film = test_yeoh();
   s->kind = kind;
+  s->memory.ctx = ctx;
   assert_ok(dea_grid_create(ctx, order, blocks, 2, plies, 2, fibre_on_second,
                             kind == FLAT ? 0 : -0.5 * h_m, length_m, &s->grid));
-  assert_int_equal(dea_element_set_create(ctx, order, order_z, &s->elements), DEA_OK);
+  assert_int_equal(dea_element_set_create(ctx, order, order_z, &s->memory, &s->elements), DEA_OK);
   s->layers[0] = (struct dea_part_material){.pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
                                             .kappa_Pa = 4e7,
                                             .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
@@ -99,7 +101,7 @@ static void strip_destroy(struct strip *s)
   free(s->layer);
   free(s->active);
   free(s->kinds);
-  dea_element_set_release(ctx, &s->elements);
+  dea_arena_free(&s->memory);
   free(s->u);
   free(s->multiplier);
   free(s->across_V);

@@ -24,7 +24,7 @@ static size_t control_count(const struct dea_solid *s)
   return count + (s->state.drop_V != NULL ? p->grid->element_count : 0);
 }
 
-void dea_load_steps_release(struct dea_load_steps *path)
+static void release(struct dea_load_steps *path)
 {
   dea_arena_free(&path->memory);
   *path = (struct dea_load_steps){0};
@@ -37,7 +37,7 @@ dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
   if (path->state_count == states && path->control_count == controls) {
     return DEA_OK;
   }
-  dea_load_steps_release(path); // a load more: what was before is no guide
+  release(path); // a load more: what was before is no guide
   path->memory.ctx = ctx;
   dea_solid_alloc_doubles(
       &path->memory, states,
@@ -46,7 +46,7 @@ dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
       &path->memory, controls,
       (double **[]){&path->controls, &path->controls_from, &path->controls_goal, &path->at, NULL});
   if (path->memory.failed) {
-    dea_load_steps_release(path);
+    release(path);
     return DEA_E_MEMORY;
   }
   path->state_count = states;

@@ -9,7 +9,6 @@
 
 /* Memory for states and controls of the solid as it is now. */
 dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s);
-void dea_load_steps_release(struct dea_load_steps *path);
 /* Displacements and all multipliers, to and from one vector [state_count]. */
 void dea_solid_state_get(const struct dea_solid *s, double *state);
 void dea_solid_state_set(struct dea_solid *s, const double *state);

@@ -120,7 +120,8 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
   p->grid = grid;
   p->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
   p->dofs = (size_t)p->per_node * grid->node_count;
-  dea_status status = dea_element_set_create(ctx, grid->order, options->order_z, &p->elements);
+  dea_status status =
+      dea_element_set_create(ctx, grid->order, options->order_z, &s->memory, &p->elements);
   status = status == DEA_OK ? fill_solid(ctx, s, options) : status;
   struct dea_solid_row_lengths lengths = {.memory = {.ctx = ctx}};
   status = dea_solid_create_matrix(ctx, s, status, &lengths);
@@ -138,8 +139,7 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   }
   dea_solid_field_destroy(s);
   dea_solid_destroy_matrix(s);
-  dea_load_steps_release(&s->work.load_steps);
-  dea_element_set_release(ctx, &s->problem.elements);
+  dea_arena_free(&s->work.load_steps.memory);
   dea_free(ctx, s->problem.loads);
   dea_arena_free(&s->memory);
   dea_free(ctx, s);

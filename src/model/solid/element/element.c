@@ -11,14 +11,14 @@ const struct dea_element_type *const dea_element_types[DEA_ELEMENT_COUNT] = {
 };
 
 dea_status dea_element_set_create(struct dea_context *ctx, int order, int order_z,
-                                  struct dea_element_set *out)
+                                  struct dea_arena *memory, struct dea_element_set *out)
 {
   *out = (struct dea_element_set){0};
   for (size_t kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
     struct dea_element *e = &out->of[kind];
     e->type = dea_element_types[kind];
-    e->basis = dea_alloc(ctx, 1, e->type->basis_size);
-    DEA_TRY_MEMORY(e->basis != NULL);
+    e->basis = dea_arena_alloc(memory, 1, e->type->basis_size);
+    DEA_TRY(ctx, dea_arena_status(memory));
     dea_status status = e->type->create(order, order_z, e);
     if (status != DEA_OK) {
       return dea_fail(ctx, status, "elements have the orders 1 to %d, not %d and %d",
@@ -29,14 +29,6 @@ dea_status dea_element_set_create(struct dea_context *ctx, int order, int order_
     out->predicted_count = predicted > out->predicted_count ? predicted : out->predicted_count;
   }
   return DEA_OK;
-}
-
-void dea_element_set_release(struct dea_context *ctx, struct dea_element_set *set)
-{
-  for (size_t kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
-    dea_free(ctx, set->of[kind].basis);
-    set->of[kind].basis = NULL;
-  }
 }
 
 dea_status dea_element_mass(const struct dea_element *e,

@@ -7,7 +7,7 @@
  * N_a      basis function of node a                                       1 */
 #pragma once
 
-#include "base/context.h"
+#include "base/arena.h"
 #include "model/solid/element/element_list.h"
 #include "model/solid/point/part_material.h"
 
@@ -169,10 +169,9 @@ struct dea_element_type {
 extern const struct dea_element_type *const dea_element_types[DEA_ELEMENT_COUNT];
 
 /* All kinds at orders in the plane and through the thickness, each 1 to DEA_HEX_ORDER_MAX
- * (DEA_E_ARGUMENT otherwise). Released by dea_element_set_release also after a failure. */
+ * (DEA_E_ARGUMENT otherwise). memory: of their bases. */
 dea_status dea_element_set_create(struct dea_context *ctx, int order, int order_z,
-                                  struct dea_element_set *out);
-void dea_element_set_release(struct dea_context *ctx, struct dea_element_set *set);
+                                  struct dea_arena *memory, struct dea_element_set *out);
 
 /* Consistent mass between nodes int rho N_a N_b [kg], the same for each component of the
  * displacement (docs/theory/vibration.md). [nodes][nodes] */
