@@ -240,9 +240,11 @@ static dea_status read_fit(struct work *w, json_t **out)
   size_t count = 0;
   DEA_TRY_MEMORY(beside != NULL);
   const bool is_file = dea_text_ends_with(w->at->text, ".json");
-  dea_status status = dea_path_build(w->ctx, beside, is_file ? "" : "fit.json", path);
+  dea_status status = dea_path_build(w->ctx, beside, "fit.json", path);
+  status = status == DEA_OK
+               ? dea_file_read(w->ctx, is_file ? beside : path, FILE_MAX, &bytes, &count)
+               : status;
   dea_free(w->ctx, beside);
-  status = status == DEA_OK ? dea_file_read(w->ctx, path, FILE_MAX, &bytes, &count) : status;
   if (status == DEA_E_IO) {
     DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, w->at->location, "from_fit: %s",
                                     dea_context_message(w->ctx)));

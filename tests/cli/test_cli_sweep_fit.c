@@ -125,7 +125,7 @@ TEST(test_search)
   static char text[COMMAND_TEXT_MAX];
   double t, s, product = 0;
   int count = 0, centre = 0;
-  write_file("objectives: [{quantity: electrode_edge_u_m}]\nfrom_fit: device.fit\n"
+  write_file("objectives: [{quantity: electrode_edge_u_m}]\nfrom_fit: device.fit/fit.json\n"
              "robust: {samples: 256}");
   command_expect("optimise mine.yaml -j 1", 0, "");
   command_read("mine.optimise/cases.csv", text);
