@@ -98,7 +98,7 @@ static dea_status restore(struct dea_context *ctx, const struct dea_study_job *j
   status = status == DEA_OK ? type->load(ctx, job->model, &state) : status;
   dea_state_free_values(ctx, &state);
   dea_text_free(&identity);
-  *sink->refused = status != DEA_OK;
+  *sink->refused |= status != DEA_OK;
   return status;
 }
 
