@@ -22,6 +22,7 @@ dea_status dea_folder_create_temporary(struct dea_context *ctx, const char *word
 void dea_folder_remove_temporary(const char *folder);
 /* True when something of that name exists. */
 bool dea_path_exists(const char *path);
+/* The same of directory/name; "name/": a folder. */
 bool dea_folder_has(const char *directory, const char *name);
 /* Length of a path without the slashes at its end; "/" keeps its own. */
 size_t dea_path_length(const char *path);

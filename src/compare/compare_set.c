@@ -442,8 +442,7 @@ json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance
       dea_compare_set_beside(set, m->curve, beside);
       dea_json_add_text(curve, "a", set->curves[m->curve].name);
       dea_json_add_text(curve, "b", beside);
-      quantities = json_array();
-      json_object_set_new(curve, "quantities", quantities);
+      quantities = dea_json_add_list(curve, "quantities");
     }
     json_array_append_new(m->kind == DEA_SET_VOLTAGE ? quantities : others[m->kind],
                           misfit_json(set, m, tolerance));

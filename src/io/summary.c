@@ -129,12 +129,10 @@ static void write_table(const struct dea_context *ctx, const struct dea_result *
     }
     return;
   }
-  json_t *list = json_array();
+  json_t *list = dea_json_add_list(parent, key);
   for (size_t row = 0; row < table->row_count; row++) {
-    json_t *object = dea_json_append(list);
-    write_row(ctx, result, table, row, object);
+    write_row(ctx, result, table, row, dea_json_append(list));
   }
-  json_object_set_new(parent, key, list);
 }
 
 /* Adds the tables that studies made of a model, and the points of curves that are listed. */
