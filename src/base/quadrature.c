@@ -1,8 +1,8 @@
 #include "base/quadrature.h"
 
-#include <math.h>
+#include "base/context.h"
 
-static const double pi = 3.14159265358979323846;
+#include <math.h>
 
 /* P_n and P_n' at x, by the three-term recurrence (n + 1) P_{n+1} = (2n + 1) x P_n - n P_{n-1}. */
 static void legendre(size_t n, double x, double *p, double *dp)
@@ -21,7 +21,7 @@ void dea_gauss_rule(size_t count, double *x, double *w)
 {
   double n = (double)count;
   for (size_t i = 0; i < count; i++) {
-    double at = -cos(pi * ((double)i + 0.75) / (n + 0.5)), p, dp;
+    double at = -cos(DEA_PI * ((double)i + 0.75) / (n + 0.5)), p, dp;
     for (int k = 0; k < 8; k++) { // quadratic from a good start: 4 would do
       legendre(count, at, &p, &dp);
       at -= p / dp;
@@ -38,7 +38,7 @@ void dea_lobatto_nodes(size_t order, double *x)
   x[0] = -1;
   x[order] = 1;
   for (size_t i = 1; i < order; i++) {
-    double at = -cos(pi * (double)i / n);
+    double at = -cos(DEA_PI * (double)i / n);
     for (int k = 0; k < 10; k++) { // Newton on P', with (1 - x^2) P'' = 2 x P' - n (n + 1) P
       double p, dp, before = at;
       legendre(order, at, &p, &dp);

@@ -39,7 +39,7 @@ static void print_domain(const struct dea_layout_mesh *mesh)
 {
   size_t copies = dea_layout_sector_copies(&mesh->sector);
   if (mesh->plate.order > 0) {
-    printf("%-20s %g degrees\n", "domain", dea_fibre_disc_angle(&mesh->plate) * 180 / acos(-1));
+    printf("%-20s %g degrees\n", "domain", dea_fibre_disc_angle(&mesh->plate) * 180 / DEA_PI);
   } else if (copies > 1) {
     printf("%-20s one of %zu mirrored sectors, a free mesh\n", "domain", copies);
   } else {
@@ -58,8 +58,7 @@ static void print_mesh(const struct request *request, const struct dea_layout_me
         (json_int_t)count_flat(grid), "nodes", (json_int_t)grid->node_count, "unknowns",
         (json_int_t)(3 * grid->node_count), "smallest_jacobian", dea_grid_smallest_jacobian(grid));
     if (disc) {
-      json_object_set_new(json, "angle_deg",
-                          json_real(dea_fibre_disc_angle(plate) * 180 / acos(-1)));
+      json_object_set_new(json, "angle_deg", json_real(dea_fibre_disc_angle(plate) * 180 / DEA_PI));
       json_object_set_new(json, "size_m", json_real(plate->size));
       json_object_set_new(json, "edge_size_m", json_real(plate->edge));
     }

@@ -14,7 +14,7 @@ static void print_order(const struct request *request, const struct dea_reduced_
                         const struct dea_device *device)
 {
   const bool turns = dea_reduced_order_turns(o);
-  const double display = turns ? 180 / acos(-1) : 1e6;
+  const double display = turns ? 180 / DEA_PI : 1e6;
   struct dea_reduced_point at;
   char name[120];
   dea_reduced_order_name(o, device, name, sizeof name);
@@ -34,7 +34,7 @@ static void print_order(const struct request *request, const struct dea_reduced_
     printf("%-20s %.5g Hz, %.3g %% of the compliance, %.3g %% of the slope by voltage\n",
            "frequency",
            sqrt(1 / (at.by_force * (mode->mass[0] + x * (mode->mass[1] + x * mode->mass[2])))) /
-               (2 * acos(-1)),
+               (2 * DEA_PI),
            100 * mode->share, 100 * mode->voltage_share);
   }
   printf("%-20s %d\n", "branches", o->core.branch_count);

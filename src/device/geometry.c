@@ -32,7 +32,7 @@ static double tip_radius(const struct dea_design *design, const struct dea_devic
 static void fill_fibres(const struct dea_design *design, struct dea_device *device)
 {
   device->fibre_count = (int)design->fibres.count.si;
-  const double step = 2 * acos(-1) / device->fibre_count, angle = design->fibres.angle_rad.si;
+  const double step = 2 * DEA_PI / device->fibre_count, angle = design->fibres.angle_rad.si;
   device->angle_rad = angle - step * floor(angle / step);
   device->fibre_width_m = design->fibres.width_m.si;
   device->fibre_thickness_m = design->fibres.thickness_m.si;

@@ -188,7 +188,7 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
  * along these axes. */
 static void keep_axes(struct dea_symmetry *symmetry, double angle_rad)
 {
-  const double quarter = 0.5 * acos(-1.0);
+  const double quarter = 0.5 * DEA_PI;
   bool all = symmetry->order == 0;
   double off = symmetry->mirrors > 0 ? (angle_rad - symmetry->mirror_rad) / symmetry->step_rad : 0;
   bool mirrored = all || (symmetry->mirrors > 0 && fabs(off - round(off)) < 1e-6);

@@ -137,7 +137,7 @@ static void add_piece(const struct sheet *s, const struct dea_piece *piece,
                       const struct dea_vertex *from, bool circle, struct dea_vertex *out,
                       size_t *count)
 {
-  static const double degree = 3.14159265358979323846 / 180;
+  static const double degree = DEA_PI / 180;
   const bool turned = s->map[0][0] * s->map[1][1] < s->map[0][1] * s->map[1][0];
   const double step = (keeps_circles(s) ? circle ? 180 : 90 : 5) * degree;
   const int parts = piece->arc ? (int)fmax(1, ceil(fabs(piece->sweep) / step - 1e-9)) : 1;

@@ -334,7 +334,7 @@ static void add_printing(const struct sheet *s)
 static void write_stretch(const struct dea_layout_ply *ply, char *out)
 {
   const double *l = ply->pre_stretch;
-  double degrees = ply->angle_rad * 180 / acos(-1);
+  double degrees = ply->angle_rad * 180 / DEA_PI;
   if (l[0] == l[1]) {
     snprintf(out, WORDS, "by %.4g in all directions", l[0]);
   } else {

@@ -44,8 +44,8 @@ void dea_dimensions_dimension(const struct dea_paper *paper, const double from_m
   paper->type->line(paper->canvas, from_mm[0] - out * c, from_mm[1] - out * s, to_mm[0] + out * c,
                     to_mm[1] + out * s);
   paper->type->stroke(paper->canvas, thin, INK, 0);
-  arrow(paper, from_mm[0], from_mm[1], out > 0 ? angle : angle + acos(-1));
-  arrow(paper, to_mm[0], to_mm[1], out > 0 ? angle + acos(-1) : angle);
+  arrow(paper, from_mm[0], from_mm[1], out > 0 ? angle : angle + DEA_PI);
+  arrow(paper, to_mm[0], to_mm[1], out > 0 ? angle + DEA_PI : angle);
   callout->x_mm = out > 0 ? to_mm[0] + out * c : from_mm[0] + 0.7 * dx;
   callout->y_mm = out > 0 ? to_mm[1] + out * s : from_mm[1] + 0.7 * dy;
   callout->bare = true;

@@ -52,7 +52,7 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
   if (status == DEA_OK && record->mesh->fibres > 0) {
     look.style = DEA_DASHED;
     look.title[0] = '\0';
-    status = add_diameter(ctx, panel, &drawing, angle + acos(-1) / record->mesh->fibres, &look);
+    status = add_diameter(ctx, panel, &drawing, angle + DEA_PI / record->mesh->fibres, &look);
   }
   panel->x_min = -panel->x_max;
   dea_surface_lattice_free(ctx, &drawing);

@@ -247,7 +247,7 @@ static double ranges(const struct space *space, double least, double most, doubl
 /* Lowest and highest place in the picture [mm] and half its width. */
 static void picture_range(const struct space *space, double *low, double *high, double *half)
 {
-  double tilt = TILT * acos(-1) / 180, scale = 1e3 * space->times * sin(tilt);
+  double tilt = TILT * DEA_PI / 180, scale = 1e3 * space->times * sin(tilt);
   *half = 1.02e3 * space->radius_m;
   scale = space->in_plane ? 0 : scale;
   *low = -*half * cos(tilt) + scale * fmin(space->low_m, 0);
@@ -338,7 +338,7 @@ static void add_only_command(struct dea_text *gp, const struct space *space)
 /* Towards the viewer. */
 static void view_direction(bool flat, double out[3])
 {
-  double tilt = flat ? 0 : TILT * acos(-1) / 180, turn = TURN * acos(-1) / 180;
+  double tilt = flat ? 0 : TILT * DEA_PI / 180, turn = TURN * DEA_PI / 180;
   out[0] = sin(tilt) * sin(turn);
   out[1] = -sin(tilt) * cos(turn);
   out[2] = cos(tilt);

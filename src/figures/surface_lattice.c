@@ -155,7 +155,7 @@ static struct dea_patch choose_lattice(const struct dea_field_mesh *mesh,
 /* Size of a piece of that many in the disc. */
 static double piece_size(const struct dea_field_mesh *mesh, size_t pieces)
 {
-  return dea_field_mesh_radius_m(mesh) * sqrt(acos(-1) / (double)(pieces > 0 ? pieces : 1));
+  return dea_field_mesh_radius_m(mesh) * sqrt(DEA_PI / (double)(pieces > 0 ? pieces : 1));
 }
 
 /* Lattices of the elements of one part, and the number of their points. */

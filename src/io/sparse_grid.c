@@ -12,7 +12,7 @@ enum { NODES_MAX = (1 << DEA_EMULATOR_LEVEL_MAX) + 1, DEGREE = 4 };
 
 double dea_sparse_grid_share(int level, unsigned char node)
 {
-  return 0.5 * (1 - cos(acos(-1.0) * node / (double)(1 << level)));
+  return 0.5 * (1 - cos(DEA_PI * node / (double)(1 << level)));
 }
 
 /* The first level with a node: the middle, then the ends, then what halves the steps. */

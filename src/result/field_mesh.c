@@ -123,7 +123,7 @@ struct dea_copy dea_copy_at(const struct dea_field_mesh *mesh, size_t number)
     return copy;
   }
   const size_t pair = number / 2;
-  double turn = 2 * acos(-1) * (double)pair / mesh->fold;
+  double turn = 2 * DEA_PI * (double)pair / mesh->fold;
   // a turn by t after a mirror at angle a is a mirror at a + t/2
   double angle = copy.mirrored ? 2 * mesh->symmetry_angle + turn : turn;
   double c = cos(angle), s = sin(angle), sign = copy.mirrored ? -1 : 1;

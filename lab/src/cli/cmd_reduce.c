@@ -70,10 +70,10 @@ static void print_levelling(const struct dea_levelling *l)
   if (l->by_frame) {
     printf("%-12s edges %.2f mm apart, centre at %.2f mm, tilt %.3f degrees, %.2f mm high\n",
            "frame", 1e3 * (l->edges_m[1] - l->edges_m[0]), 1e3 * l->centre_m,
-           l->tilt_rad * 180.0 / acos(-1.0), 1e3 * l->frame_height_m);
+           l->tilt_rad * 180.0 / DEA_PI, 1e3 * l->frame_height_m);
   } else {
     printf("%-12s not in the picture; centre at %.2f mm, tilt %.3f degrees\n", "frame",
-           1e3 * l->centre_m, l->tilt_rad * 180.0 / acos(-1.0));
+           1e3 * l->centre_m, l->tilt_rad * 180.0 / DEA_PI);
   }
   printf("%-12s %zu, %.2g %% of the points invalid, %.2g %% outliers; averaged over %.2f mm",
          "profiles", l->frames, 100.0 * (double)l->invalid / fmax(1.0, (double)l->total),

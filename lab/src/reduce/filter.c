@@ -23,7 +23,7 @@ static void pass(const struct dea_channel *channel, double tau_s, bool backward,
 static double time_constant(double cutoff_Hz)
 {
   double f1_Hz = cutoff_Hz / sqrt(sqrt(2.0) - 1.0);
-  return 1.0 / (2.0 * acos(-1.0) * f1_Hz);
+  return 1.0 / (2.0 * DEA_PI * f1_Hz);
 }
 
 double dea_filter_reach(double cutoff_Hz)

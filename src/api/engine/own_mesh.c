@@ -729,7 +729,7 @@ static dea_status modes(struct dea_context *ctx, struct dea_solid_object *object
                dea_free(ctx, square));
   dea_free(ctx, object->mode_square);
   for (size_t i = 0; i < count; i++) { // omega^2 -> f, negative where it is unstable
-    square[i] = copysign(sqrt(fabs(square[i])), square[i]) / (2 * acos(-1.0));
+    square[i] = copysign(sqrt(fabs(square[i])), square[i]) / (2 * DEA_PI);
   }
   object->mode_square = square;
   object->mode_shape = shape;

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double pi = 3.14159265358979323846;
-
 enum {
   ORDER_OUTER = 14,
   PROFILE_ACTIVE = 31,  // samples over the electrode, both ends
@@ -89,7 +87,7 @@ static dea_status find_extremes(const struct dea_disc *disc, const double *u, do
 static double energy_unit_J(const struct dea_disc *disc, double thickness_m)
 {
   double a = disc->electrode_radius_m;
-  return 2 * pi * thickness_m * a * a * dea_film_modulus(&disc->film);
+  return 2 * DEA_PI * thickness_m * a * a * dea_film_modulus(&disc->film);
 }
 
 static dea_status point(void *self, const double *u, double voltage_V, struct dea_load_point *out)

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 static void element_create(const struct dea_disc *disc, double R0, double R1, size_t order,
                            struct dea_disc_element *out)
 {
@@ -244,7 +242,7 @@ dea_status dea_disc_totals(const struct dea_disc *disc, const double *u, double 
       DEA_TRY_STATUS(dea_film_eval(&disc->film, element->active, voltage_V / H0, l_r, l_t, &plane));
       *energy += scale * weight * plane.W;
       if (element->active) {
-        *capacitance_F += dea_film_capacitance(&disc->film, 2 * pi * h * weight, l_r, l_t);
+        *capacitance_F += dea_film_capacitance(&disc->film, 2 * DEA_PI * h * weight, l_r, l_t);
       }
     }
   }

@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 struct dea_lift dea_lift_create(const struct dea_device *device)
 {
   double r_a = device->electrode_radius_m, r_t = device->fibre_tip_radius_m;
@@ -38,7 +36,7 @@ dea_status dea_lift_force(const struct dea_lumped *lumped, const struct dea_lift
   DEA_TRY_STATUS(dea_lumped_balance_eval(lumped, l_a, nominal_field_V_per_m, &balance));
   // dPi/dl_a = 2 l_pre (s_A - s_P) times the unstretched volume pi r_a^2 h
   double l_pre = lumped->pre_stretch;
-  double volume = pi * r_a * r_a * lumped->film.thickness_m / (l_pre * l_pre);
+  double volume = DEA_PI * r_a * r_a * lumped->film.thickness_m / (l_pre * l_pre);
   *force_N = -2 * l_pre * balance.imbalance_Pa * volume * dl_a;
   return DEA_OK;
 }

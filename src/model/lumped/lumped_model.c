@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 struct dea_model {
   struct dea_path *path;    // first
   struct dea_device device; // the disc, also of a layout that is one
@@ -20,7 +18,7 @@ struct dea_model {
 static double disc_volume_m3(const struct dea_model *model)
 {
   double r_a = model->device.electrode_radius_m;
-  return pi * r_a * r_a * model->device.film_thickness_m;
+  return DEA_PI * r_a * r_a * model->device.film_thickness_m;
 }
 
 /* Pi/(mu times the electrode disc's volume): g = 2 l_pre (s_A - s_P)/mu. */

@@ -10,7 +10,6 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
 // Below these errors are not relative: a stretch, and in the film's own measure (H0 sqrt(mu/eps),
 // mu vol) a voltage and an energy. What starts from nothing has errors as large as itself.
 static const double smallest_motion = 1e-6, smallest_voltage = 1e-4, smallest_energy = 1e-6;
@@ -21,8 +20,8 @@ double dea_lumped_mass(const struct dea_device *device)
   double film = device->film.density_kg_per_m3 * device->film_thickness_m;
   double electrodes = device->electrode.density_kg_per_m3 * 2 * device->electrode_thickness_m /
                       (device->pre_stretch * device->pre_stretch);
-  double disc = (film + electrodes) * pi * a * a * a * a / 2;
-  double annulus = film * 2 * pi * a * a * d * (L / 3 - d / 4);
+  double disc = (film + electrodes) * DEA_PI * a * a * a * a / 2;
+  double annulus = film * 2 * DEA_PI * a * a * d * (L / 3 - d / 4);
   return disc + annulus;
 }
 

@@ -77,7 +77,7 @@ static double longest_step(const struct dea_reduced *core)
   double shortest = core->mode_count == 0 && core->branch_count == 0 ? 1 : INFINITY;
   dea_reduced_at(core, 0, 0, &at);
   for (int i = 0; i < core->mode_count; i++) {
-    shortest = fmin(shortest, 2 * acos(-1) * sqrt(core->modes[i].mass[0] * at.by_force));
+    shortest = fmin(shortest, 2 * DEA_PI * sqrt(core->modes[i].mass[0] * at.by_force));
   }
   for (int i = 0; i < core->branch_count; i++) {
     shortest = fmin(shortest, core->branch_s[i]);

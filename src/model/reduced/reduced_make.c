@@ -352,7 +352,7 @@ static dea_status fit_mode(struct making *m, size_t k, const struct dea_reduced_
   *out = (struct candidate){.Hz = free[0].at.modes[k].frequency_Hz};
   for (size_t i = 0; i < count; i++) {
     const struct dea_compliance_mode *at = &free[i].at.modes[k];
-    const double omega = 2 * acos(-1.0) * at->frequency_Hz;
+    const double omega = 2 * DEA_PI * at->frequency_Hz;
     mass[i] = stiffening(m, &free[i].at) / (free[i].at.by_force * omega * omega);
     share[i] = at->voltage_share;
     if (i >= from) {

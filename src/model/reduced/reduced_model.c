@@ -50,7 +50,7 @@ static double omega_at(const struct dea_reduced_order *o, int i, const struct de
 {
   return i < o->core.mode_count
              ? sqrt(1 / (at->by_force * mass_at(&o->core, &o->core.modes[i], at->q)))
-             : 2 * acos(-1.0) * o->left_Hz;
+             : 2 * DEA_PI * o->left_Hz;
 }
 
 /* In which a voltage has to rise to the highest, as a ramp, so that what follow_drive estimates is
@@ -272,7 +272,7 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
     return dea_fail(ctx, DEA_E_DESIGN, "small motions need the densities of all parts");
   }
   for (size_t i = 0; i < count; i++) {
-    const double complex q = answer(model, excitation, 2 * acos(-1.0) * frequency_Hz[i]);
+    const double complex q = answer(model, excitation, 2 * DEA_PI * frequency_Hz[i]);
     points[i] = *at;
     points[i].frequency_Hz = frequency_Hz[i];
     points[i].ripple_V = excitation->amplitude_V;

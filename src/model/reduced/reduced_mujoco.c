@@ -93,7 +93,7 @@ dea_status dea_reduced_add_mujoco(const struct dea_reduced_export *e, struct dea
                "\">\n  <option gravity=\"0 0 0\" timestep=\"%.9g\"/>\n  <worldbody>\n    <body>\n"
                "      <inertial pos=\"0 0 0\" mass=\"%.9g\" diaginertia=\"%.9g %.9g %.9g\"/>\n"
                "      <joint name=\"q\" type=\"%s\" axis=\"%s\"/>\n    </body>\n  </worldbody>\n",
-               2 * acos(-1) * sqrt(mass / K) / STEPS, mass, mass, mass, mass,
+               2 * DEA_PI * sqrt(mass / K) / STEPS, mass, mass, mass, mass,
                turns ? "hinge" : "slide", axes[component]);
   dea_text_add(out,
                "  <actuator>\n    <general name=\"film\" joint=\"q\" gaintype=\"fixed\" "

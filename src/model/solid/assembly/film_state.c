@@ -238,8 +238,8 @@ static dea_status find_compressed(const struct dea_solid *s,
 static dea_status compression_of(const struct dea_solid *s, const struct dea_solid_film_data *films,
                                  size_t e, const struct dea_membrane_state *laminate, double *ratio)
 {
-  const double pi = 3.14159265358979323846;
-  const double borne_Nm = 4 * pi * pi * bending_stiffness_Nm(s, e), height = height_of(s, e);
+  const double borne_Nm = 4 * DEA_PI * DEA_PI * bending_stiffness_Nm(s, e),
+               height = height_of(s, e);
   struct dea_element_strains strains;
   bool compressed[DEA_HEX_GAUSS_MAX];
   DEA_TRY_STATUS(find_compressed(s, films, e, compressed));

@@ -27,13 +27,12 @@ enum {
 };
 enum { SECTOR_BLOCKS_MAX = WEDGES_MAX + RINGS_MAX + POLARS_MAX };
 
-static const double pi = 3.14159265358979323846;
 static const double same = 1e-9;       // of the frame's radius: one place
 static const double free_share = 0.99; // of a sector that fibres may take where they begin
 
 double dea_fibre_disc_angle(const struct dea_fibre_disc *plate)
 {
-  return plate->sectors * pi / (plate->fibres > 0 ? plate->fibres : 4);
+  return plate->sectors * DEA_PI / (plate->fibres > 0 ? plate->fibres : 4);
 }
 
 int dea_fibre_disc_sectors(const struct dea_fibre_disc *plate)
@@ -131,7 +130,7 @@ static dea_status check_disc(struct dea_context *ctx, const struct dea_fibre_dis
   if (p->fibres == 0) {
     return DEA_OK;
   }
-  double capacity = fmin(pi / N, 0.5 * pi);
+  double capacity = fmin(DEA_PI / N, 0.5 * DEA_PI);
   bool fit = p->tip_radius > 0 && p->outer_radius > p->tip_radius * (1 + same) &&
              p->outer_radius <= frame * (1 + same) && p->tip_width > 0 && p->outer_width > 0 &&
              p->tip_width < 2 * p->tip_radius && p->outer_width < 2 * p->outer_radius &&
@@ -196,7 +195,7 @@ static dea_status lines_create(struct dea_context *ctx, const struct dea_fibre_d
   }
   out->wider = log(finer);
   out->count = out->across + (p->fibres > 0 ? share_between(p) : share(out->alpha * a, p->size));
-  size_t least = out->alpha > 0.51 * pi ? 4 : 2; // two for each wedge of the core
+  size_t least = out->alpha > 0.51 * DEA_PI ? 4 : 2; // two for each wedge of the core
   out->count = out->count < least ? least : out->count;
   return out->count > DEA_FIBRE_DISC_LINE_MAX ? too_many(ctx) : DEA_OK;
 }
@@ -408,8 +407,8 @@ static dea_status add_inside(struct dea_context *ctx, struct builder *b)
   const struct lines *lines = &b->cuts;
   const struct dea_fibre_disc *p = lines->plate;
   double first = lines->circle[0], *cuts = b->radial[CIRCLES_MAX - 1];
-  bool one = lines->alpha <= 0.51 * pi;
-  double part = fmin(1, lines->alpha / (one ? 1 : 2) / (0.25 * pi));
+  bool one = lines->alpha <= 0.51 * DEA_PI;
+  double part = fmin(1, lines->alpha / (one ? 1 : 2) / (0.25 * DEA_PI));
   double rho = 0.55 * b->lines.circle[0] * part;
   size_t count = cut_between(p, 0.55 * first * part, first, p->size / finer_at_tips(p), cuts);
   if (count == 0) {

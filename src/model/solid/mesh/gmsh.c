@@ -24,7 +24,6 @@
 
 enum { LINES_SAID = 6, SAMPLES_MAX = 20000, LATTICE = 300 };
 #define SIZES_FILE "sizes.txt"
-static const double pi = 3.14159265358979323846;
 static const double mm = 1e3, unit_m = 1e-3; // of the script
 static const double near = 1e-6;             // of the mesh's size: a node on a contour
 
@@ -121,7 +120,7 @@ static void write_point(struct dea_text *out, struct numbers *last, const double
 static void write_piece(struct dea_text *out, struct numbers *last, const struct dea_piece *piece,
                         size_t to)
 {
-  int parts = piece->arc ? (int)ceil(fabs(piece->sweep) / (0.5 * pi) - 1e-9) : 1;
+  int parts = piece->arc ? (int)ceil(fabs(piece->sweep) / (0.5 * DEA_PI) - 1e-9) : 1;
   size_t from = last->point, centre = 0;
   if (piece->arc) {
     write_point(out, last, piece->centre);

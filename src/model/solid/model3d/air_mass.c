@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* A parallelogram of the surface, the product of its area and the shapes' normal components, and
  * the potential of a source of one in it at its middle, the sums over others being taken at theirs.
  */
@@ -35,7 +33,7 @@ static double own_potential(const double a[3], const double b[3], double area)
     for (int j = -FAR; j <= FAR; j++) {
       const double r =
           sqrt(fmax(i * i * dea_dot(a, a) + 2 * i * j * dea_dot(a, b) + j * j * dea_dot(b, b), 0));
-      sum += i != 0 || j != 0 ? erfc(sqrt(pi / area) * r) / r : 0;
+      sum += i != 0 || j != 0 ? erfc(sqrt(DEA_PI / area) * r) / r : 0;
     }
   }
   return 4 / sqrt(area) - 2 * sum;
@@ -143,7 +141,7 @@ static void add_products(const struct work *w, size_t i, const struct dea_layout
     }
   }
   for (size_t k = 0; k < w->count * w->count; k++) {
-    out[k] += to->flux[k / w->count] * potential[k % w->count] / pi;
+    out[k] += to->flux[k / w->count] * potential[k % w->count] / DEA_PI;
   }
 }
 

@@ -133,7 +133,7 @@ static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea
   }
   for (size_t k = 0; k < MODES; k++) {
     out->modes[k] =
-        (struct dea_compliance_mode){1 / (2 * acos(-1.0) * sqrt(modes.inverse[k])),
+        (struct dea_compliance_mode){1 / (2 * DEA_PI * sqrt(modes.inverse[k])),
                                      modes.along[k] * modes.along[k] / (w->copies * by_force),
                                      modes.along[k] * modes.by_rate[k] / by_voltage};
   }

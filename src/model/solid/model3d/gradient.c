@@ -83,7 +83,7 @@ static bool is_asked(const struct dea_gradient_request *ask, size_t mode)
 static dea_status get_mode(struct dea_context *ctx, struct work *w, size_t i, const double *squares,
                            double *v)
 {
-  static const double apart = 1e-4, pi = 3.14159265358979323846;
+  static const double apart = 1e-4;
   const double square = squares[i], least = apart * fabs(square);
   struct mode *m = &w->modes[i];
   const bool alone =
@@ -91,7 +91,7 @@ static dea_status get_mode(struct dea_context *ctx, struct work *w, size_t i, co
   m->v = v;
   m->known = alone && square != 0 && is_asked(w->ask, i);
   m->square = square;
-  m->rate = 1 / (4 * pi * sqrt(fabs(square)));
+  m->rate = 1 / (4 * DEA_PI * sqrt(fabs(square)));
   if (!alone && is_asked(w->ask, i)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: no gradient of the frequency of mode %zu: another one "

@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Share of the kinetic energy of a mode, v . Mv = 1, that is out of the plane; work: [2][dofs]. */
 static dea_status out_of_plane(struct dea_context *ctx, const struct dea_model *m,
                                const double *vector, double *work, double *fraction)
@@ -49,7 +47,7 @@ static dea_status fill_points(struct dea_context *ctx, const struct dea_model *m
     struct dea_load_point *p = &points[k];
     *p = *at;
     p->mode = (double)(k + 1);
-    p->frequency_Hz = copysign(sqrt(fabs(square[k])), square[k]) / (2 * pi);
+    p->frequency_Hz = copysign(sqrt(fabs(square[k])), square[k]) / (2 * DEA_PI);
     p->mode_centre = dea_observer_column(m->observer, centre, v) / largest(v, dofs);
     DEA_TRY(ctx, out_of_plane(ctx, m, v, work, &p->mode_out_of_plane));
   }
@@ -290,7 +288,7 @@ static dea_status find_answers(struct dea_context *ctx, struct dea_model *model,
   double *rad_per_s = dea_solid_alloc(ctx, count, sizeof *rad_per_s);
   DEA_TRY_MEMORY(rad_per_s != NULL);
   for (size_t i = 0; i < count; i++) {
-    rad_per_s[i] = 2 * pi * frequency_Hz[i];
+    rad_per_s[i] = 2 * DEA_PI * frequency_Hz[i];
   }
   dea_solid_liquids_stiffen(model, true);
   const dea_status status =

@@ -19,7 +19,7 @@ static const double incompressible = 0.49;
 static struct dea_part_material stretched(enum dea_part part, const struct dea_material *material,
                                           const double pre_stretch[2], double angle_rad)
 {
-  const double quarter = 0.5 * acos(-1.0), turns = angle_rad / quarter, whole = round(turns);
+  const double quarter = 0.5 * DEA_PI, turns = angle_rad / quarter, whole = round(turns);
   bool along = pre_stretch[0] == pre_stretch[1] || fabs(turns - whole) < same_angle;
   bool across = along && fmod(whole, 2) != 0;
   double l1 = pre_stretch[across ? 1 : 0], l2 = pre_stretch[across ? 0 : 1];

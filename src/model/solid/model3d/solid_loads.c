@@ -222,8 +222,7 @@ static void enclose(struct dea_model *model, size_t i, double area_m2)
                                                   : least_volume * pow(whole_m2, 1.5)) /
                    copies,
       .ambient_Pa = pressure->ambient_Pa,
-      .stiffness_Pa_per_m3 =
-          copies * stiff * 8 * acos(-1.0) * modulus_N_per_m / (whole_m2 * whole_m2)};
+      .stiffness_Pa_per_m3 = copies * stiff * 8 * DEA_PI * modulus_N_per_m / (whole_m2 * whole_m2)};
   if (pressure->encloses != DEA_OPEN) {
     dea_pressure_enclose(model->pressures[i], &enclosed);
   }

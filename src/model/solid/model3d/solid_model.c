@@ -15,7 +15,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 static const double path_step = 0.05; // of the square of the voltage, or of path_unit
 static const double path_step_most = 0.5;
 static const double path_unit = 2; // of the solid's length: displacement that counts as much as
@@ -251,11 +250,11 @@ static double kept_share(const struct dea_push *push, const double X[3])
   if (push->parts < 2) {
     return 1;
   }
-  double at = atan2(X[1], X[0]) / (2 * pi) * push->parts;
+  double at = atan2(X[1], X[0]) / (2 * DEA_PI) * push->parts;
   for (int k = 0; k < push->parts; k++) {
     double away = at - k - push->parts * round((at - k) / push->parts);
     if ((push->in >> k & 1) != 0 && fabs(away) < 1) {
-      fraction += pow(cos(0.5 * pi * away), 2);
+      fraction += pow(cos(0.5 * DEA_PI * away), 2);
     }
   }
   return fraction;
